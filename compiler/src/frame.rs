@@ -1,0 +1,261 @@
+//! A program at one moment: every number that the runtimes need, ready in f32.
+//!
+//! Both backends render from the same [`Frame`], so whatever is computed here once per frame on
+//! the host in f64 cannot differ between them.
+
+mod camera;
+mod extent;
+
+use crate::curve::{self, CurveTable, Quadratic};
+use crate::ir::FunctionId;
+use crate::program::{LightKind, Lighting, Program, Slot, Slot3};
+use crate::reference;
+use extent::{Solid, Space};
+use glam::DVec3;
+use vol_language::diag::Diagnostic;
+
+/// A box aligned with the axes; infinite for shapes without bounds, `lo > hi` if empty.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// Smallest corner.
+    pub lo: [f32; 3],
+    /// Largest corner.
+    pub hi: [f32; 3],
+}
+
+/// Everything about one frame of a program. Objects, media and lights that are switched off are
+/// left out, so indices here are not those of the program.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Outputs of the frame function in f64, for the reference.
+    pub uniforms: Vec<f64>,
+    /// The same rounded to f32, for the runtimes.
+    pub uniforms_f32: Vec<f32>,
+    /// Control points of each curve.
+    pub curves: Vec<Vec<Quadratic>>,
+    /// Prepared pieces of each curve.
+    pub curve_tables: Vec<CurveTable>,
+    /// Eye and picture plane.
+    pub camera: CameraFrame,
+    /// Solids that are there.
+    pub objects: Vec<ObjectFrame>,
+    /// Media that are there.
+    pub media: Vec<MediumFrame>,
+    /// Lights that are on.
+    pub lights: Vec<LightFrame>,
+    /// Radiance where nothing is hit.
+    pub background: [f32; 3],
+    /// Ambient light, already multiplied into the surfaces' emitted part.
+    pub ambient: [f32; 3],
+    /// Box around all bounded objects and media; what the default camera frames.
+    pub bounds: Aabb,
+}
+
+/// Eye and picture plane: the ray through `(u, v)` in [-1, 1], v up, is
+/// `forward + u * right + v * up`, normalised.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraFrame {
+    /// The eye.
+    pub origin: [f32; 3],
+    /// Unit vector into the picture.
+    pub forward: [f32; 3],
+    /// To the right edge of the picture at distance 1, aspect ratio included.
+    pub right: [f32; 3],
+    /// To the upper edge of the picture at distance 1.
+    pub up: [f32; 3],
+}
+
+/// A solid in one frame.
+#[derive(Clone, Debug)]
+pub struct ObjectFrame {
+    /// Index in [`crate::program::Program::objects`].
+    pub index: usize,
+    /// See [`crate::program::Object`].
+    pub distance: FunctionId,
+    /// See [`crate::program::Object`].
+    pub gradient: FunctionId,
+    /// See [`crate::program::Object`].
+    pub surface: FunctionId,
+    /// See [`crate::program::Object`].
+    pub shows_normals: bool,
+    /// No surface is outside.
+    pub bounds: Aabb,
+    /// A distance times this never overshoots the surface: one over the steepness.
+    pub safe_scale: f32,
+}
+
+/// A medium in one frame.
+#[derive(Clone, Debug)]
+pub struct MediumFrame {
+    /// Index in [`crate::program::Program::media`].
+    pub index: usize,
+    /// See [`crate::program::Medium`].
+    pub region: FunctionId,
+    /// See [`crate::program::Medium`].
+    pub interior: FunctionId,
+    /// See [`crate::program::Medium`].
+    pub extinction: FunctionId,
+    /// See [`crate::program::Medium`].
+    pub phase: FunctionId,
+    /// See [`crate::program::Medium`].
+    pub lighting: Lighting,
+    /// The region is inside.
+    pub bounds: Aabb,
+}
+
+/// A light in one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct LightFrame {
+    /// Whether `position` is a unit direction towards the light or the place of a point light.
+    pub distant: bool,
+    /// Unit direction or position.
+    pub position: [f32; 3],
+    /// Irradiance on a facing plane, or radiant intensity.
+    pub color: [f32; 3],
+    /// Whether objects and media block it.
+    pub shadows: bool,
+}
+
+/// What is asked of a render, beside the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Job {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Distance between samples of media along camera rays, in scene units; positive.
+    pub step: f32,
+    /// Distance between samples along shadow rays through media; positive.
+    pub shadow_step: f32,
+}
+
+/// Scene-linear picture, row 0 at the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// One per pixel, rows from the top.
+    pub pixels: Vec<Pixel>,
+}
+
+/// What one camera ray brings back.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pixel {
+    /// Radiance, background included.
+    pub color: [f32; 3],
+    /// Fraction of the background's light that arrives: 0 where a surface is hit.
+    pub transmittance: [f32; 3],
+    /// Distance of the first surface along the viewing axis; infinite where there is none.
+    pub depth: f32,
+}
+
+impl Program {
+    /// The default value of every param, in order.
+    #[must_use]
+    pub fn default_params(&self) -> Vec<Vec<f64>> {
+        self.params.iter().map(|param| param.default.clone()).collect()
+    }
+
+    /// The program at one moment: params (one list of components each, in order), time in seconds,
+    /// number of the frame, and the size of the picture, which sets the aspect ratio.
+    ///
+    /// # Errors
+    /// A displacement that has no bound, a light without a direction: a message about the scene.
+    pub fn frame(
+        &self,
+        params: &[Vec<f64>],
+        time: f64,
+        number: f64,
+        size: [u32; 2],
+    ) -> Result<Frame, Diagnostic> {
+        let mut inputs = vec![time, number];
+        inputs.extend(params.iter().flatten());
+        let uniforms = reference::evaluate(&self.module.frame, &inputs, &[], &[]);
+        let at = |slot: Slot| uniforms[slot.0 as usize];
+        let at3 = |slots: Slot3| slots.map(at);
+        let on = |slot: Slot| at(slot) != 0.0;
+        let curves: Vec<Vec<Quadratic>> =
+            self.curves.iter().map(|curve| control_points(curve, at3)).collect();
+        let curve_tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
+        let space =
+            Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &curve_tables };
+        let mut bounds = extent::EMPTY;
+        let mut objects = Vec::new();
+        for (index, object) in self.objects.iter().enumerate().filter(|(_, object)| on(object.enabled)) {
+            let solid = space.solid(&object.extent)?;
+            bounds = extent::enclose_finite(bounds, solid.bounds);
+            objects.push(object_frame(index, object, solid));
+        }
+        let mut media = Vec::new();
+        for (index, medium) in self.media.iter().enumerate().filter(|(_, medium)| on(medium.enabled)) {
+            let solid = space.solid(&medium.extent)?;
+            bounds = extent::enclose_finite(bounds, solid.bounds);
+            media.push(medium_frame(index, medium, solid));
+        }
+        let lights = self.lights.iter().filter(|light| on(light.enabled));
+        let lights = lights.map(|light| LightFrame {
+            distant: matches!(light.kind, LightKind::Distant(_)),
+            position: match light.kind {
+                LightKind::Distant(direction) => round3(camera::unit(at3(direction).into(), DVec3::Y).into()),
+                LightKind::Point(position) => round3(at3(position)),
+            },
+            color: round3(at3(light.color)),
+            shadows: on(light.shadows),
+        });
+        let lights = lights.collect();
+        let view = camera::View {
+            from: self.camera.from.map(at3),
+            at: self.camera.at.map(at3),
+            up: at3(self.camera.up),
+            fov: at(self.camera.fov),
+            aspect: f64::from(size[0]) / f64::from(size[1]),
+        };
+        Ok(Frame {
+            camera: camera::camera(&view, bounds),
+            background: round3(at3(self.render.background)),
+            ambient: round3(at3(self.render.ambient)),
+            bounds: extent::rounded(bounds),
+            uniforms_f32: uniforms.iter().map(|&v| v as f32).collect(),
+            uniforms,
+            curves,
+            curve_tables,
+            objects,
+            media,
+            lights,
+        })
+    }
+}
+
+fn control_points(curve: &crate::program::Curve, at3: impl Fn(Slot3) -> [f64; 3]) -> Vec<Quadratic> {
+    let segments = curve.segments.iter();
+    segments.map(|&[a, b, c]| Quadratic { a: at3(a), b: at3(b), c: at3(c) }).collect()
+}
+
+fn object_frame(index: usize, object: &crate::program::Object, solid: Solid) -> ObjectFrame {
+    ObjectFrame {
+        index,
+        distance: object.distance,
+        gradient: object.gradient,
+        surface: object.surface,
+        shows_normals: object.shows_normals,
+        bounds: extent::rounded(solid.bounds),
+        // Rounded down, so that the product never exceeds the safe step.
+        safe_scale: (1.0 / solid.steepness.max(1.0)) as f32 * (1.0 - f32::EPSILON),
+    }
+}
+
+fn medium_frame(index: usize, medium: &crate::program::Medium, solid: Solid) -> MediumFrame {
+    MediumFrame {
+        index,
+        region: medium.region,
+        interior: medium.interior,
+        extinction: medium.extinction,
+        phase: medium.phase,
+        lighting: medium.lighting,
+        bounds: extent::rounded(solid.bounds),
+    }
+}
+
+fn round3(v: [f64; 3]) -> [f32; 3] {
+    v.map(|c| c as f32)
+}

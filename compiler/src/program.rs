@@ -1,0 +1,235 @@
+//! The contract between the compiler and the runtimes: a scene as plain data.
+//!
+//! A [`Program`] holds everything about a scene that does not change from frame to frame. Numbers
+//! that may depend on params and time are [`Slot`]s: indices into the outputs of the frame
+//! function. [`crate::frame::Frame`] is a program at one moment, with those numbers filled in.
+
+use crate::ir::{FunctionId, Module};
+use vol_language::source::Span;
+use vol_language::ty::Type;
+
+/// Index of a number among the frame function's outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Slot(pub u32);
+
+/// Three slots: a point, direction or colour.
+pub type Slot3 = [Slot; 3];
+
+/// A compiled scene.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// All functions.
+    pub module: Module,
+    /// Values set from outside.
+    pub params: Vec<Param>,
+    /// Curves by index; data of [`crate::ops::Op::Closest`].
+    pub curves: Vec<Curve>,
+    /// Solids.
+    pub objects: Vec<Object>,
+    /// Participating media.
+    pub media: Vec<Medium>,
+    /// Lights.
+    pub lights: Vec<Light>,
+    /// The camera.
+    pub camera: Camera,
+    /// Picture settings.
+    pub render: Render,
+    /// Functions of a position that can be asked for by name (`vol query`, tests).
+    pub fields: Vec<Field>,
+    /// What the compiler left out, one sentence each.
+    pub report: Vec<String>,
+}
+
+/// A param and where its components enter the frame function.
+#[derive(Clone, Debug)]
+pub struct Param {
+    /// Its name.
+    pub name: String,
+    /// Its type; angles are in radians.
+    pub ty: Type,
+    /// Default, one number per component.
+    pub default: Vec<f64>,
+    /// Allowed range of a scalar.
+    pub range: Option<(f64, f64)>,
+    /// First input of the frame function that it sets.
+    pub first_input: u32,
+}
+
+/// A chain of quadratic Bezier segments with control points set per frame.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Control points a, b, c of each segment.
+    pub segments: Vec<[Slot3; 3]>,
+}
+
+/// A solid.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its name in the scene.
+    pub name: String,
+    /// Position to signed distance bound: 3 inputs, 1 output.
+    pub distance: FunctionId,
+    /// Position to gradient of the distance: 3 inputs, 3 outputs, not normalised.
+    pub gradient: FunctionId,
+    /// Position to surface response: 3 inputs, [`SURFACE_OUTPUTS`] outputs.
+    pub surface: FunctionId,
+    /// Colour by normal instead of by light.
+    pub shows_normals: bool,
+    /// Bounds and steepness, computed per frame.
+    pub extent: Extent,
+    /// Whether it is there this frame: 0 or 1.
+    pub enabled: Slot,
+    /// Its block.
+    pub span: Span,
+}
+
+/// Outputs of [`Object::surface`]: emitted rgb (ambient light times ka in it), diffuse rgb (multiplies irradiance times
+/// max(0, N.L)), specular rgb (multiplies irradiance times max(0, R.E)^shininess), shininess.
+pub const SURFACE_OUTPUTS: usize = 10;
+
+/// A participating medium.
+#[derive(Clone, Debug)]
+pub struct Medium {
+    /// Its name in the scene.
+    pub name: String,
+    /// Position to signed distance of the region: 3 inputs, 1 output, negative inside. Along a
+    /// ray it is used to find where the ray crosses the wall between two samples.
+    pub region: FunctionId,
+    /// Position inside the region to scattering, extinction and emission per unit length (density
+    /// already in them, never negative): 3 inputs, 9 outputs, rgb each.
+    pub interior: FunctionId,
+    /// Position inside the region to extinction alone: 3 inputs, 3 outputs; for shadows.
+    pub extinction: FunctionId,
+    /// Phase function: inputs `1 - cos` and `1 + cos` of the angle between the directions of the
+    /// light before and after scattering; output per steradian, integral over the sphere 1.
+    pub phase: FunctionId,
+    /// How light reaches it.
+    pub lighting: Lighting,
+    /// Bounds of the region, computed per frame.
+    pub extent: Extent,
+    /// Whether it is there this frame: 0 or 1.
+    pub enabled: Slot,
+    /// Its block.
+    pub span: Span,
+}
+
+/// How light reaches the points of a medium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lighting {
+    /// Only emission.
+    None,
+    /// Every light in full.
+    Unshadowed,
+    /// Lights weakened by the media and hidden by the objects between.
+    Shadowed,
+}
+
+/// A light.
+#[derive(Clone, Debug)]
+pub struct Light {
+    /// Its name in the scene.
+    pub name: String,
+    /// Where it shines from.
+    pub kind: LightKind,
+    /// Irradiance on a facing plane (distant) or radiant intensity (point).
+    pub color: Slot3,
+    /// Whether objects and media block it.
+    pub shadows: Slot,
+    /// Whether it is on: 0 or 1.
+    pub enabled: Slot,
+}
+
+/// The kinds of lights.
+#[derive(Clone, Copy, Debug)]
+pub enum LightKind {
+    /// Direction towards the light, any length but 0.
+    Distant(Slot3),
+    /// Position.
+    Point(Slot3),
+}
+
+/// The camera; `None` frames the scene's bounds.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// Eye.
+    pub from: Option<Slot3>,
+    /// Point looked at.
+    pub at: Option<Slot3>,
+    /// Direction that is up in the picture.
+    pub up: Slot3,
+    /// Vertical field of view in radians.
+    pub fov: Slot,
+}
+
+/// Picture settings.
+#[derive(Clone, Debug)]
+pub struct Render {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Radiance where nothing is hit.
+    pub background: Slot3,
+    /// Ambient light.
+    pub ambient: Slot3,
+    /// Length of the animation in seconds.
+    pub duration: Slot,
+    /// Frames per second.
+    pub fps: Slot,
+}
+
+/// A function of a position with a name.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// `distance:ball`, `density:cloud`, or the name of a top-level function.
+    pub name: String,
+    /// 3 inputs; as many outputs as the value has components.
+    pub function: FunctionId,
+}
+
+/// Where a shape is and how steep its distance bound, as a recipe that each frame fills in.
+#[derive(Clone, Debug)]
+pub enum Extent {
+    /// All of space (a plane, the complement of a solid).
+    Unbounded,
+    /// An axis-aligned box.
+    Box {
+        /// Smallest corner.
+        lo: Slot3,
+        /// Largest corner.
+        hi: Slot3,
+    },
+    /// Tube around a curve.
+    Tube {
+        /// The curve.
+        curve: u32,
+        /// (t, arc length) to radius: 2 inputs, 1 output.
+        radius: FunctionId,
+    },
+    /// Smallest box around all.
+    Union(Vec<Extent>),
+    /// Box common to all.
+    Intersection(Vec<Extent>),
+    /// Everything outside a shape: unbounded, as steep as the shape.
+    Complement(Box<Extent>),
+    /// Moved by `position * matrix + offset` (columns of a rotation times a uniform scale).
+    Placed {
+        /// What is moved.
+        child: Box<Extent>,
+        /// Columns: images of the axes.
+        columns: [Slot3; 3],
+        /// Image of the origin.
+        offset: Slot3,
+    },
+    /// Grown on all sides by a distance.
+    Grown(Box<Extent>, Slot),
+    /// Grown by the largest |amount| and steeper by the largest slope of the amount over the box.
+    Displaced {
+        /// The shape before displacement.
+        child: Box<Extent>,
+        /// Position to amount: 3 inputs, 1 output.
+        amount: FunctionId,
+        /// Position to gradient of the amount: 3 inputs, 3 outputs.
+        slope: FunctionId,
+        /// The displacement expression, for messages.
+        span: Span,
+    },
+}

@@ -1,0 +1,227 @@
+//! A function as a list of register operations, for interpreters.
+//!
+//! In: a verified [`Function`]. Out: a [`Tape`] that an interpreter walks from front to back:
+//!
+//! ```text
+//! %0 = input 0               r0 = input 0
+//! %1 = constant 2.0          r1 = constant 2.0
+//! %2 = mul %0 %1             r1 = mul r0 r1        r1 is free again after its last use
+//! %3 = perlin_gradient[0] …  r2..r5 = perlin_gradient r0 r1 r0
+//! %4 = extract %3 2                                no operation: %4 is r4
+//! return %4                  outputs: r4
+//! ```
+//!
+//! | operation | reads | writes |
+//! |---|---|---|
+//! | [`TapeOp::Constant`] | nothing; truth values are 0 and 1 | one register |
+//! | [`TapeOp::Input`], [`TapeOp::Uniform`] | an argument, an output of the frame function | one register |
+//! | [`TapeOp::Apply`] | as many registers as the operation has operands | consecutive registers, one per result |
+//!
+//! A result may have the register of an operand that is read for the last time. Values that no
+//! output needs are left out.
+
+mod alloc;
+
+use crate::ir::Function;
+use crate::ops::Op;
+
+/// Most operands that an operation has.
+pub const MAX_OPERANDS: usize = 6;
+
+/// Index of a register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Register(pub u32);
+
+impl Register {
+    /// As an index.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// One step of a tape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TapeOp {
+    /// A number.
+    Constant {
+        /// Register to write.
+        to: Register,
+        /// The number, rounded once.
+        value: f32,
+    },
+    /// An argument of the function.
+    Input {
+        /// Register to write.
+        to: Register,
+        /// Which argument.
+        index: u32,
+    },
+    /// An output of the frame function.
+    Uniform {
+        /// Register to write.
+        to: Register,
+        /// Which output.
+        index: u32,
+    },
+    /// An operation of the table.
+    Apply {
+        /// Which one.
+        op: Op,
+        /// Seed of a noise, index of a curve.
+        data: u32,
+        /// First register to write, one per result.
+        to: Register,
+        /// Registers of the operands; entries past their number mean nothing.
+        args: [Register; MAX_OPERANDS],
+    },
+}
+
+/// A function ready to be interpreted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tape {
+    /// Number of arguments.
+    pub inputs: u32,
+    /// Registers of the results, once all steps are done.
+    pub outputs: Vec<Register>,
+    /// Number of registers.
+    pub registers: u32,
+    /// The steps in order.
+    pub ops: Vec<TapeOp>,
+}
+
+impl Tape {
+    /// Allocates registers for a verified function.
+    #[must_use]
+    pub fn new(function: &Function) -> Self {
+        alloc::allocate(function)
+    }
+}
+
+/// A constant of the IR as the runtimes use it: rounded once, never infinite.
+#[must_use]
+pub fn rounded(constant: f64) -> f32 {
+    (constant as f32).clamp(-f32::MAX, f32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::verify::random;
+    use crate::ir::{Inst, text};
+    use crate::ops::{self, Context};
+
+    const UNIFORMS: [f64; 4] = [0.5, -2.0, 3.25, 100.0];
+
+    /// Values of all outputs by the table's meaning, straight from the function.
+    fn direct(function: &Function, inputs: &[f64]) -> Vec<f64> {
+        let mut values: Vec<ops::Results<f64>> = Vec::new();
+        for inst in &function.insts {
+            let single = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let result = match inst {
+                Inst::Constant(number) => single(f64::from(rounded(number.0))),
+                Inst::Boolean(truth) => single(f64::from(u8::from(*truth))),
+                Inst::Input(i) => single(inputs[*i as usize]),
+                Inst::Uniform(i) => single(UNIFORMS[*i as usize]),
+                Inst::Extract(tuple, i) => single(values[tuple.index()][*i as usize]),
+                Inst::Apply { op, data, args } => {
+                    let args: Vec<f64> = args.iter().map(|a| values[a.index()][0]).collect();
+                    (ops::operation(*op).meaning)(&args, Context { data: *data, curves: &[] })
+                }
+            };
+            values.push(result);
+        }
+        function.outputs.iter().map(|v| values[v.index()][0]).collect()
+    }
+
+    /// The same from the tape. Registers start empty; results past the last free or unread ones
+    /// are written all the same, so that a clobbered register shows.
+    fn by_tape(tape: &Tape, inputs: &[f64]) -> Vec<f64> {
+        let mut registers: Vec<Option<f64>> = vec![None; tape.registers as usize];
+        for step in &tape.ops {
+            match *step {
+                TapeOp::Constant { to, value } => registers[to.index()] = Some(f64::from(value)),
+                TapeOp::Input { to, index } => registers[to.index()] = Some(inputs[index as usize]),
+                TapeOp::Uniform { to, index } => registers[to.index()] = Some(UNIFORMS[index as usize]),
+                TapeOp::Apply { op, data, to, args } => {
+                    let row = ops::operation(op);
+                    let read =
+                        |r: &Register| registers[r.index()].expect("reads a register that was written");
+                    let args: Vec<f64> = args[..row.args.len()].iter().map(read).collect();
+                    let results = (row.meaning)(&args, Context { data, curves: &[] });
+                    for (i, _) in row.results.iter().enumerate() {
+                        registers[to.index() + i] = Some(results[i]);
+                    }
+                }
+            }
+        }
+        tape.outputs.iter().map(|r| registers[r.index()].expect("outputs were written")).collect()
+    }
+
+    #[test]
+    fn tapes_compute_what_functions_mean() {
+        for seed in 0..500 {
+            let shape = random::Shape { curves: 0, operations: 60, ..random::Shape::default() };
+            let function = random::function(seed, &shape);
+            let tape = Tape::new(&function);
+            let inputs = [0.3, -1.75, 12.5];
+            let bits = |values: Vec<f64>| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            let (expected, found) = (direct(&function, &inputs), by_tape(&tape, &inputs));
+            assert_eq!(bits(found), bits(expected), "{}\n{tape:?}", text::print_function(&function));
+        }
+    }
+
+    #[test]
+    fn registers_are_reused() {
+        let mut body = "%0 = input 0\n".to_owned();
+        for i in 1..100 {
+            body += &format!("%{i} = add %{} %{}\n", i - 1, i - 1);
+        }
+        let function =
+            text::parse_function(&format!("fn f(1) {{\n{body}return %99\n}}")).expect("well-formed text");
+        assert_eq!(Tape::new(&function).registers, 1);
+    }
+
+    #[test]
+    fn results_of_a_tuple_are_consecutive() {
+        let function = text::parse_function(
+            "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = perlin_gradient[5] %0 %1 %2\n\
+             %4 = extract %3 3\n%5 = extract %3 1\n%6 = sub %4 %5\nreturn %6\n}",
+        )
+        .expect("well-formed text");
+        let tape = Tape::new(&function);
+        // Three inputs stop being needed at the noise, whose four results start where they stood.
+        assert_eq!(tape.registers, 4);
+        let TapeOp::Apply { op: Op::Sub, to, args, .. } = tape.ops[4] else { panic!("{tape:?}") };
+        assert_eq!(
+            (args[0], args[1], to, tape.outputs[0]),
+            (Register(3), Register(1), Register(0), Register(0))
+        );
+    }
+
+    #[test]
+    fn leaves_are_loaded_before_their_first_use() {
+        let function = text::parse_function(
+            "fn f(1) {\n%0 = constant 1.0\n%1 = uniform 0\n%2 = boolean true\n%3 = input 0\n%4 = neg %3\n\
+             %5 = select %2 %4 %0\n%6 = sin %1\nreturn %5 %0\n}",
+        )
+        .expect("well-formed text");
+        let tape = Tape::new(&function);
+        // The dead sine and its uniform are left out.
+        assert_eq!(tape.ops.len(), 5);
+        assert_eq!(tape.ops[0], TapeOp::Input { to: Register(0), index: 0 });
+        assert_eq!(tape.ops[2], TapeOp::Constant { to: Register(1), value: 1.0 });
+    }
+
+    #[test]
+    fn the_widest_operation_fits() {
+        assert!(ops::TABLE.iter().all(|row| row.args.len() <= MAX_OPERANDS));
+        assert!(size_of::<TapeOp>() <= 40);
+    }
+
+    #[test]
+    fn constants_are_finite() {
+        assert_eq!([rounded(1e300), rounded(-1e300), rounded(0.1)], [f32::MAX, -f32::MAX, 0.1]);
+        assert_eq!(rounded(-0.0).to_bits(), (-0.0f32).to_bits());
+    }
+}

@@ -1,0 +1,223 @@
+//! WGSL: the functions of a module as shader text.
+//!
+//! In: verified IR. Out: text that naga has accepted. What every shader of this crate is made of:
+//!
+//! | part | from |
+//! |---|---|
+//! | bindings | [`layout`], with the words that the host puts into the buffers |
+//! | prelude: `fun.wgsl`, `noise.wgsl`, `curve.wgsl` | kept as files, included where called |
+//! | `fn vol_f0(x0: f32, …)`, one per IR function | [`expr`] |
+//! | an entry point | [`evaluation_module`], [`render`] |
+//!
+//! ```text
+//! fn distance:ball(3) {              // distance:ball
+//!   %0 = input 0                     fn vol_f0(x0: f32, x1: f32, x2: f32) -> f32 {
+//!   %1 = uniform 4                     let v1: f32 = vol_uniforms[4];
+//!   %2 = mul %0 %1            ──►      let v2: f32 = (x0 * v1);
+//!   return %2                          return v2;
+//! }                                  }
+//! ```
+//!
+//! A function gives `f32`, `vec2f`, `vec3f` or `vec4f` for one to four outputs, else a structure
+//! `VolOut10 { v0: f32, … }` that all functions with so many outputs share. Every intermediate has a
+//! name, everything is in parentheses, and there is neither a branch nor `&&` or `||`: drivers take
+//! exponential time over those, and Tint refuses what naga lets pass.
+
+mod expr;
+pub mod layout;
+mod names;
+pub mod render;
+
+use crate::ir::{Function, FunctionId, Module};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+pub use layout::{curve_words, permutation_words, uniform_words};
+
+/// Threads in a workgroup of [`evaluation_module`].
+pub const EVALUATION_GROUP: u32 = 64;
+
+/// Prelude files, those that others call first.
+const PRELUDE: [&str; 3] =
+    [include_str!("wgsl/fun.wgsl"), include_str!("wgsl/noise.wgsl"), include_str!("wgsl/curve.wgsl")];
+
+/// A text that naga does not accept: a fault of this crate, never of a scene.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WgslError {
+    /// It is no WGSL.
+    #[error("the shader does not parse: {message}")]
+    Parse {
+        /// What naga says.
+        message: String,
+    },
+    /// It breaks a rule of WGSL.
+    #[error("the shader is not valid: {message}")]
+    Validate {
+        /// What naga says.
+        message: String,
+    },
+}
+
+/// Bindings 0 to 2, the prelude and all functions of a module: what an entry point is put under.
+/// `fun.wgsl` is there in any case, for the entry point; it binds `vol_input` and `vol_output`.
+#[must_use]
+pub fn functions(module: &Module) -> String {
+    let all: Vec<usize> = (0..module.functions.len()).collect();
+    chosen(module, &all, "vol_exp2(")
+}
+
+/// A shader that evaluates one function at many points.
+///
+/// Its entry point is `evaluate`, in groups of [`EVALUATION_GROUP`] along x, then along y;
+/// `vol_input` holds the number of points (the bits of a u32) and then the inputs, point by point;
+/// `vol_output` gets the outputs, point by point.
+///
+/// # Errors
+///
+/// [`WgslError`] if naga does not accept the text.
+pub fn evaluation_module(module: &Module, function: FunctionId) -> Result<String, WgslError> {
+    let entry = evaluation_entry(function, module.function(function));
+    let text = format!("{}\n{}{entry}", chosen(module, &[function.index()], ""), layout::ENTRY_BINDINGS);
+    validate(&text)?;
+    Ok(text)
+}
+
+/// Asks naga about a text.
+///
+/// # Errors
+///
+/// [`WgslError`] with naga's message.
+pub fn validate(wgsl: &str) -> Result<(), WgslError> {
+    let module = naga::front::wgsl::parse_str(wgsl)
+        .map_err(|error| WgslError::Parse { message: error.emit_to_string(wgsl) })?;
+    let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    naga::valid::Validator::new(flags, capabilities)
+        .validate(&module)
+        .map_err(|error| WgslError::Validate { message: error.emit_to_string(wgsl) })?;
+    Ok(())
+}
+
+/// The parts of the prelude that `text` needs, in order.
+fn prelude(text: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    // A file calls only files before it, so going backwards all callers are known.
+    for part in PRELUDE.into_iter().rev() {
+        let calls = |name: &str| text.contains(name) || parts.iter().any(|later| later.contains(name));
+        let mut names = part.lines().filter_map(|line| line.strip_prefix("fn ")?.split_once('('));
+        if names.any(|(name, _)| calls(&format!("{name}("))) {
+            parts.insert(0, part);
+        }
+    }
+    parts.join("\n")
+}
+
+/// Bindings, prelude with what `user` calls, output structures and text of the functions at `indices`.
+fn chosen(module: &Module, indices: &[usize], user: &str) -> String {
+    let curve_table = layout::curve_table(module);
+    let mut body = String::new();
+    let arities: BTreeSet<usize> = indices.iter().map(|&i| module.functions[i].outputs.len()).collect();
+    for arity in arities {
+        body.push_str(&names::output_structure(arity));
+    }
+    for &i in indices {
+        body.push_str(&expr::function(i, &module.functions[i], curve_table));
+    }
+    format!("{}\n{}\n{body}", layout::SCENE_BINDINGS, prelude(&format!("{body}{user}")))
+}
+
+fn evaluation_entry(id: FunctionId, function: &Function) -> String {
+    let (inputs, outputs) = (function.inputs, function.outputs.len());
+    let arguments: Vec<String> = (0..inputs).map(|i| format!("vol_input[source + {i}u]")).collect();
+    let mut text = format!(
+        "@compute @workgroup_size({EVALUATION_GROUP})\n\
+         fn evaluate(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) groups: vec3u) {{\n  \
+           let index: u32 = id.x + (id.y * (groups.x * {EVALUATION_GROUP}u));\n  \
+           if (index >= bitcast<u32>(vol_input[0])) {{ return; }}\n  \
+           let source: u32 = 1u + (index * {inputs}u);\n  \
+           let sink: u32 = index * {outputs}u;\n  \
+           let result = vol_f{}({});\n",
+        id.0,
+        arguments.join(", "),
+    );
+    for i in 0..outputs {
+        let _ = writeln!(text, "  vol_output[sink + {i}u] = result{};", names::output_field(outputs, i));
+    }
+    text.push_str("}\n");
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ir::text;
+    use crate::ir::verify::random;
+
+    fn module(functions: Vec<Function>) -> Module {
+        let frame = "frame(1) {\n%0 = input 0\nreturn %0 %0 %0 %0\n}";
+        Module { functions, ..text::parse_module(frame).expect("well-formed text") }
+    }
+
+    #[test]
+    fn generated_functions_are_accepted() {
+        for seed in 0..150 {
+            let outputs = seed as u32 % 7;
+            let shape = random::Shape { outputs, operations: 40, ..random::Shape::default() };
+            let module = module(vec![random::function(seed, &shape)]);
+            if let Err(error) = evaluation_module(&module, FunctionId(0)) {
+                panic!("{error}\n{}", text::print_function(&module.functions[0]));
+            }
+        }
+    }
+
+    #[test]
+    fn one_module_holds_many_functions() {
+        let shapes = (0..20).map(|i| random::Shape { outputs: i % 11, ..random::Shape::default() });
+        let functions = shapes.enumerate().map(|(i, shape)| random::function(i as u64, &shape)).collect();
+        assert_eq!(validate(&super::functions(&module(functions))), Ok(()));
+    }
+
+    #[test]
+    fn long_functions_are_accepted() {
+        let shape = random::Shape { operations: 3000, ..random::Shape::default() };
+        assert!(evaluation_module(&module(vec![random::function(9, &shape)]), FunctionId(0)).is_ok());
+    }
+
+    #[test]
+    fn only_what_is_called_is_included() {
+        let with = |line: &str| {
+            let body = format!("fn f(1) {{\n%0 = input 0\n{line}\nreturn %0\n}}");
+            let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
+            evaluation_module(&module, FunctionId(0)).expect("naga accepts it")
+        };
+        let found = |text: &str| PRELUDE.map(|part| text.contains(part));
+        assert_eq!(found(&with("")), [false, false, false]);
+        assert_eq!(found(&with("%1 = sin %0")), [true, false, false]);
+        assert_eq!(found(&with("%1 = perlin[0] %0 %0 %0")), [true, true, false]);
+        assert_eq!(found(&with("%1 = closest[0] %0 %0 %0")), [true, false, true]);
+    }
+
+    #[test]
+    fn the_text_of_a_function() {
+        let body = "fn bad\u{7}name(2) {\n%0 = input 1\n%1 = constant -0.5\n%2 = uniform 3\n%3 = less %0 %1\n\
+            %4 = select %3 %2 %0\nreturn %4 %0\n}";
+        let function = text::parse_function(body).expect("well-formed text");
+        let text = expr::function(7, &function, 4);
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some("// bad name"));
+        assert_eq!(lines.next(), Some("fn vol_f7(x0: f32, x1: f32) -> vec2f {"));
+        assert_eq!(lines.next(), Some("  let v1: f32 = (-0.5f);"));
+        assert_eq!(lines.next(), Some("  let v2: f32 = vol_uniforms[3];"));
+        assert!(lines.next().is_some_and(|line| line.starts_with("  let v3: bool = ")));
+        assert!(lines.next().is_some_and(|line| line.starts_with("  let v4: f32 = ")));
+        assert_eq!(lines.next(), Some("  return vec2f(v4, x1);"));
+    }
+
+    #[test]
+    fn errors_carry_the_message_of_naga() {
+        assert!(
+            matches!(validate("fn f( {"), Err(WgslError::Parse { message }) if message.contains("expected"))
+        );
+        let invalid = "@compute @workgroup_size(0) fn f() {}";
+        assert!(matches!(validate(invalid), Err(WgslError::Validate { .. } | WgslError::Parse { .. })));
+    }
+}

@@ -1,0 +1,114 @@
+// The integrator: what a picture means. Twin of runtime-cpu/src/render, with the same file names,
+// function names and step comments. One invocation computes one pixel.
+//
+// Written before this text, per program: how many objects and media there are, the places AT_… of
+// the words of vol_input, and the functions object_… and medium_… that pick the function of one of
+// them. Every value stays finite; skipped parts add exactly 0.
+
+@group(0) @binding(3) var<storage, read> vol_input: array<f32>;
+@group(0) @binding(4) var<storage, read_write> vol_output: array<f32>;
+
+const FAR: f32 = 4.0e6;
+const PARALLEL: f32 = 1e-12;
+const EPSILON: f32 = 0x1p-23f;
+const FLAT: f32 = 1e-15;
+const OPAQUE: f32 = 24.0;
+const STOP: f32 = 0x1p-16f;
+const NO_DEPTH: f32 = 1e30;
+const MAX_STEPS: u32 = 2000u;
+const REFINEMENTS: u32 = 4u;
+const MAX_NODES: i32 = 16384;
+const SHOWS_NORMALS: f32 = 2.0;
+const UNLIT: f32 = 1.0;
+const UNSHADOWED: f32 = 2.0;
+const SHADOWED: f32 = 3.0;
+
+fn word3(at: u32) -> vec3f {
+    return vec3f(vol_input[at], vol_input[at + 1u], vol_input[at + 2u]);
+}
+
+fn dot3(a: vec3f, b: vec3f) -> f32 {
+    return ((a.x * b.x) + (a.y * b.y)) + (a.z * b.z);
+}
+
+fn length3(v: vec3f) -> f32 {
+    return sqrt(dot3(v, v));
+}
+
+fn largest(v: vec3f) -> f32 {
+    return max(max(v.x, v.y), v.z);
+}
+
+fn smallest(v: vec3f) -> f32 {
+    return min(min(v.x, v.y), v.z);
+}
+
+fn decay(x: f32) -> f32 {
+    return vol_exp2(x * -1.44269504);
+}
+
+fn decay3(x: vec3f) -> vec3f {
+    return vec3f(decay(x.x), decay(x.y), decay(x.z));
+}
+
+// (1 - exp(-x)) / x, 1 at 0.
+fn mean_decay(x: f32) -> f32 {
+    let tail = x * ((1.0f / 120.0f) - (x * (1.0f / 720.0f)));
+    let series = 1.0 - (x * (0.5 - (x * ((1.0f / 6.0f) - (x * ((1.0f / 24.0f) - tail))))));
+    let quotient = (1.0 - decay(x)) / max(x, 0.35);
+    return select(quotient, series, x < 0.35);
+}
+
+fn mean_decay3(x: vec3f) -> vec3f {
+    return vec3f(mean_decay(x.x), mean_decay(x.y), mean_decay(x.z));
+}
+
+// x^y for x >= 0; 0 at 0.
+fn power(x: f32, y: f32) -> f32 {
+    let some = x > 0.0;
+    let value = vol_exp2(y * vol_log2(select(1.0, x, some)));
+    return select(0.0, value, some);
+}
+
+@compute @workgroup_size(8, 8)
+fn render(@builtin(global_invocation_id) id: vec3u) {
+    let tile = vec4u(
+        u32(vol_input[AT_TILE]),
+        u32(vol_input[AT_TILE + 1u]),
+        u32(vol_input[AT_TILE + 2u]),
+        u32(vol_input[AT_TILE + 3u]),
+    );
+    if ((id.x >= tile.z) | (id.y >= tile.w)) {
+        return;
+    }
+    let column = tile.x + id.x;
+    let row = tile.y + id.y;
+    let ray = camera_ray(vec2f(f32(column) + 0.5, f32(row) + 0.5));
+    // Find what is behind the media: surfaces, else the background.
+    let contact = trace(ray);
+    var behind = word3(AT_BACKGROUND);
+    var end = FAR;
+    var depth = NO_DEPTH;
+    if (contact.hit) {
+        behind = shade(ray, contact);
+        end = contact.t;
+        depth = contact.t * dot3(ray.direction, word3(AT_FORWARD));
+    }
+    // Look at it through the media.
+    let glow = march(ray, end);
+    let color = glow.light + (glow.transmittance * behind);
+    let transmittance = select(glow.transmittance, vec3f(0.0), contact.hit);
+    write_pixel((row * u32(vol_input[AT_SIZE])) + column, color, transmittance, depth);
+}
+
+fn write_pixel(index: u32, color: vec3f, transmittance: vec3f, depth: f32) {
+    let at = 8u * index;
+    vol_output[at] = color.x;
+    vol_output[at + 1u] = color.y;
+    vol_output[at + 2u] = color.z;
+    vol_output[at + 3u] = transmittance.x;
+    vol_output[at + 4u] = transmittance.y;
+    vol_output[at + 5u] = transmittance.z;
+    vol_output[at + 6u] = depth;
+    vol_output[at + 7u] = 0.0;
+}

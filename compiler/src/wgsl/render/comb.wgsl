@@ -1,0 +1,101 @@
+// The samples of media along a ray, and the length of ray that each stands for.
+// Twin: runtime-cpu/src/render/comb.rs, which says why.
+
+struct Comb {
+    step: f32,
+    end: f32,
+    // Nodes that may be inside some medium.
+    first: i32,
+    last: i32,
+    // The same for each medium.
+    ranges: array<vec2i, MEDIUM_SLOTS>,
+    // Signed distances of each medium at the node before and at the next one.
+    before: array<f32, MEDIUM_SLOTS>,
+    own: array<f32, MEDIUM_SLOTS>,
+}
+
+fn node_distance(node: i32, step_size: f32) -> f32 {
+    return (f32(node) + 0.5) * step_size;
+}
+
+fn medium_word(medium: u32) -> u32 {
+    return AT_MEDIA + (MEDIUM_WORDS * medium);
+}
+
+// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
+// inside are in the range or next to it.
+fn node_range(ray: Ray, medium: u32, step_size: f32, end: f32) -> vec2i {
+    let at = medium_word(medium);
+    let reach = vec3f(1.01 * step_size);
+    let span = slab(ray, word3(at + 1u) - reach, word3(at + 4u) + reach);
+    let leave = min(span.leave, end);
+    // Node numbers stay where f32 knows them and a half.
+    let first = min(max(floor((span.entry / step_size) - 0.5), 0.0), 4194304.0);
+    let last = min(floor(max(leave, 0.0) / step_size), 4194304.0);
+    let none = (span.entry > leave) | (vol_input[at] == 0.0);
+    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
+}
+
+// Smallest range that holds both.
+fn range_union(a: vec2i, b: vec2i) -> vec2i {
+    let both = vec2i(min(a.x, b.x), max(a.y, b.y));
+    return select(select(both, a, b.x > b.y), b, a.x > a.y);
+}
+
+// Lays out the nodes of the ray up to its end.
+fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
+    var comb: Comb;
+    comb.step = step_size;
+    comb.end = end;
+    var whole = vec2i(0, -1);
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let range = node_range(ray, medium, step_size, end);
+        comb.ranges[medium] = range;
+        whole = range_union(whole, range);
+    }
+    comb.first = whole.x;
+    comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let range = comb.ranges[medium];
+        comb.before[medium] = wall(ray, medium, range, comb.first - 1, step_size, end);
+        comb.own[medium] = wall(ray, medium, range, comb.first, step_size, end);
+    }
+    return comb;
+}
+
+// Signed distance of a node from the nearest of: the medium's wall, the ray's two ends.
+fn wall(ray: Ray, medium: u32, range: vec2i, node: i32, step_size: f32, end: f32) -> f32 {
+    var region = FAR;
+    let t = node_distance(node, step_size);
+    let some = range.x <= range.y;
+    if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
+        region = medium_region(medium, ray_at(ray, t));
+    }
+    return max(region, max(t - end, -t));
+}
+
+// Part of the interval between two neighbouring nodes that the first stands for, given the signed
+// distances of both.
+fn share(own: f32, other: f32, step_size: f32) -> f32 {
+    let divisor = select(-1.0, own - other, own < other);
+    let part = step_size * (own / divisor);
+    return select(part, 0.5 * step_size, other < 0.0);
+}
+
+// The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
+// come in order, from the first one.
+fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
+    var any_inside = false;
+    let step_size = (*comb).step;
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let before = (*comb).before[medium];
+        let own = (*comb).own[medium];
+        let after = wall(ray, medium, (*comb).ranges[medium], node + 1, step_size, (*comb).end);
+        let weight = share(own, before, step_size) + share(own, after, step_size);
+        (*weights)[medium] = select(0.0, weight, own < 0.0);
+        any_inside = any_inside | (own < 0.0);
+        (*comb).before[medium] = own;
+        (*comb).own[medium] = after;
+    }
+    return any_inside;
+}

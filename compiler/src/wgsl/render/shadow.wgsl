@@ -1,0 +1,60 @@
+// How much of a light arrives at a point: solids between hide it, media between weaken it.
+// Twin: runtime-cpu/src/render/shadow.rs, which says why.
+
+// Fraction of the light that arrives, per channel.
+fn visibility(ray: Ray, distance: f32, bias: f32) -> vec3f {
+    // Only what no solid hides goes through the media.
+    if (blocked(ray, distance, 0.25 * bias)) {
+        return vec3f(0.0);
+    }
+    let depth = optical_depth(ray, distance);
+    return select(decay3(depth), vec3f(0.0), smallest(depth) > OPAQUE);
+}
+
+// Whether the ray enters a solid before it reaches the light.
+fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
+    var sides = no_sides();
+    var spans = object_spans(ray, &sides);
+    let end = min(distance, FAR);
+    var t = 0.0;
+    var inside = false;
+    for (var count = 0u; count < MAX_STEPS; count++) {
+        // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
+        let near = nearest(ray, &spans, &sides, t);
+        inside = near.distance < 0.0;
+        t += max(min(near.distance, near.gap), least);
+        if (inside | (t >= end)) {
+            break;
+        }
+    }
+    return inside;
+}
+
+// Integral of the extinction along the ray.
+fn optical_depth(ray: Ray, end: f32) -> vec3f {
+    var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
+    var weights: array<f32, MEDIUM_SLOTS>;
+    var depth = vec3f(0.0);
+    for (var node = comb.first; node <= comb.last; node++) {
+        // Optical depth of each node, all media together.
+        if (weigh(ray, &comb, node, &weights)) {
+            depth += node_depth(ray_at(ray, node_distance(node, comb.step)), &weights);
+        }
+        // Go on while the ray is not dark yet.
+        if (smallest(depth) > OPAQUE) {
+            break;
+        }
+    }
+    return depth;
+}
+
+fn node_depth(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> vec3f {
+    var depth = vec3f(0.0);
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let weight = (*weights)[medium];
+        if (weight > 0.0) {
+            depth += medium_extinction(medium, point) * weight;
+        }
+    }
+    return depth;
+}

@@ -1,0 +1,191 @@
+// Where rays meet solids: sphere tracing.
+// Twin: runtime-cpu/src/render/surface.rs, which says why.
+
+struct Near {
+    distance: f32,
+    solid: u32,
+    gap: f32,
+}
+
+struct Contact {
+    hit: bool,
+    solid: u32,
+    t: f32,
+    position: vec3f,
+    normal: vec3f,
+    residual: f32,
+}
+
+fn footprint() -> f32 {
+    return (2.0 * length3(word3(AT_UP))) / vol_input[AT_SIZE + 1u];
+}
+
+fn remoteness() -> f32 {
+    return length3(word3(AT_EYE));
+}
+
+// How near a ray may pass a surface unseen: half a pixel, or what rounding makes of positions.
+fn tolerance(t: f32) -> f32 {
+    let pixel = (0.5 * footprint()) * t;
+    return max(pixel, (4.0 * EPSILON) * (remoteness() + t));
+}
+
+// Shortest step of a ray: nothing thinner than a fortieth of a pixel is sure to be seen.
+fn stride(t: f32) -> f32 {
+    let pixel = (0.025 * footprint()) * t;
+    return max(pixel, (4.0 * EPSILON) * (remoteness() + t));
+}
+
+fn shadow_bias(t: f32) -> f32 {
+    let pixel = (0.1 * footprint()) * t;
+    return pixel + rounding(t);
+}
+
+// How far rounding may move a surface along a ray, with room to spare.
+fn rounding(t: f32) -> f32 {
+    return (64.0 * EPSILON) * (remoteness() + t);
+}
+
+fn object_word(solid: u32) -> u32 {
+    return AT_OBJECTS + (OBJECT_WORDS * solid);
+}
+
+// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye.
+fn find_sides() -> array<f32, OBJECT_SLOTS> {
+    var sides: array<f32, OBJECT_SLOTS>;
+    for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        let at = object_word(solid);
+        let eye = word3(AT_EYE);
+        sides[solid] = 1.0;
+        if (contains(word3(at + 1u), word3(at + 4u), eye) & (vol_input[at] != 0.0)) {
+            sides[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
+        }
+    }
+    return sides;
+}
+
+fn no_sides() -> array<f32, OBJECT_SLOTS> {
+    var sides: array<f32, OBJECT_SLOTS>;
+    for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        sides[solid] = 1.0;
+    }
+    return sides;
+}
+
+// Parts of the ray in the box of each solid, a little longer than rounding can make them; all of the
+// ray for a solid that is seen from within, since it ends where the box may end.
+fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> array<Span, OBJECT_SLOTS> {
+    var spans: array<Span, OBJECT_SLOTS>;
+    for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        let at = object_word(solid);
+        let span = slab(ray, word3(at + 1u), word3(at + 4u));
+        let slack = 16.0 * EPSILON;
+        let there = vol_input[at] != 0.0;
+        spans[solid].entry = select(FAR, span.entry - (slack * span.entry), there);
+        let leave = select(span.leave + (slack * span.leave), FAR, (*sides)[solid] < 0.0);
+        spans[solid].leave = select(-FAR, leave, there);
+    }
+    return spans;
+}
+
+// What is around a place on the ray.
+fn nearest(
+    ray: Ray,
+    spans: ptr<function, array<Span, OBJECT_SLOTS>>,
+    sides: ptr<function, array<f32, OBJECT_SLOTS>>,
+    t: f32,
+) -> Near {
+    var near = Near(FAR, 0u, FAR);
+    for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        let span = (*spans)[solid];
+        let some = span.entry <= span.leave;
+        let before = some & (t < span.entry);
+        near.gap = select(near.gap, min(near.gap, span.entry - t), before);
+        if (some & (t >= span.entry) & (t <= span.leave)) {
+            // Keep the smallest distance; the earlier solid on a tie.
+            let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
+            let safe = vol_input[object_word(solid) + 7u] * seen;
+            let closer = safe < near.distance;
+            near.distance = select(near.distance, safe, closer);
+            near.solid = select(near.solid, solid, closer);
+        }
+    }
+    return near;
+}
+
+// First surface on the ray.
+fn trace(ray: Ray) -> Contact {
+    var sides = find_sides();
+    var spans = object_spans(ray, &sides);
+    var t = 0.0;
+    var before = 0.0;
+    var hit = false;
+    var solid = 0u;
+    for (var count = 1u; count <= MAX_STEPS; count++) {
+        let near = nearest(ray, &spans, &sides, t);
+        // Stop inside a solid; on the last step also where it would have been near enough.
+        hit = near.distance < select(0.0, tolerance(t), count == MAX_STEPS);
+        solid = near.solid;
+        // Walk as far as nothing can be, at least a fortieth of a pixel.
+        let next = t + max(min(near.distance, near.gap), stride(t));
+        if (hit | (next >= FAR)) {
+            break;
+        }
+        before = t;
+        t = next;
+    }
+    if (hit) {
+        return refine(ray, solid, before, t, sides[solid]);
+    }
+    return Contact(false, 0u, FAR, vec3f(0.0), vec3f(0.0), 0.0);
+}
+
+// Two places on a ray, the field 0 between them: (t, value) each.
+struct Bracket {
+    outside: vec2f,
+    inside: vec2f,
+}
+
+// False position between the last two places.
+fn refine(ray: Ray, solid: u32, before: f32, t: f32, side: f32) -> Contact {
+    let outer = side * object_distance(solid, ray_at(ray, before));
+    let inner = side * object_distance(solid, ray_at(ray, t));
+    var bracket = Bracket(vec2f(before, outer), vec2f(t, inner));
+    for (var round = 0u; round < REFINEMENTS; round++) {
+        let between = probe(bracket);
+        let value = side * object_distance(solid, ray_at(ray, between));
+        bracket = narrow(bracket, vec2f(between, value));
+    }
+    let nearer = abs(bracket.outside.y) < abs(bracket.inside.y);
+    let best = select(bracket.inside, bracket.outside, nearer);
+    // Take the normal a little inside: on the surface itself a distance may have no gradient.
+    let inside = best.x + rounding(best.x);
+    let gradient = object_gradient(solid, ray_at(ray, inside)) * side;
+    return contact(ray, solid, best.x, abs(best.y), gradient);
+}
+
+// Where the field would be 0 if it were linear between the two; the inner place where it does not
+// change sign.
+fn probe(bracket: Bracket) -> f32 {
+    let is_proper = (bracket.outside.y >= 0.0) & (bracket.inside.y < 0.0);
+    let fall = select(1.0, bracket.outside.y - bracket.inside.y, is_proper);
+    let part = bracket.outside.y / fall;
+    let between = bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part);
+    return select(bracket.inside.x, between, is_proper);
+}
+
+// Takes the value at the probe into account.
+fn narrow(bracket: Bracket, found: vec2f) -> Bracket {
+    let within = found.y < 0.0;
+    return Bracket(select(found, bracket.outside, within), select(bracket.inside, found, within));
+}
+
+// The place of a hit, its normal and how exact it is.
+fn contact(ray: Ray, solid: u32, t: f32, value: f32, gradient: vec3f) -> Contact {
+    let steepness = length3(gradient);
+    let is_flat = steepness < FLAT;
+    let divisor = select(steepness, 1.0, is_flat);
+    let normal = select(gradient / divisor, -ray.direction, is_flat);
+    let most = 4.0 * tolerance(t);
+    return Contact(true, solid, t, ray_at(ray, t), normal, min(value / divisor, most));
+}

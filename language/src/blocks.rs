@@ -1,0 +1,137 @@
+//! The keys of the scene's blocks: names, types and defaults in one table.
+
+use crate::ty::Type;
+
+/// The kinds of blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BlockKind {
+    /// Where the picture is taken from; at most one.
+    Camera,
+    /// A light source.
+    Light,
+    /// A solid with a material.
+    Object,
+    /// A participating medium in a region.
+    Medium,
+    /// Size, background and timing of the picture; at most one.
+    Render,
+}
+
+/// All kinds, in the order in which messages list them.
+pub const BLOCK_KINDS: [BlockKind; 5] =
+    [BlockKind::Camera, BlockKind::Light, BlockKind::Object, BlockKind::Medium, BlockKind::Render];
+
+impl BlockKind {
+    /// The keyword.
+    #[must_use]
+    pub fn keyword(self) -> &'static str {
+        match self {
+            Self::Camera => "camera",
+            Self::Light => "light",
+            Self::Object => "object",
+            Self::Medium => "medium",
+            Self::Render => "render",
+        }
+    }
+
+    /// Whether blocks of this kind carry a name of their own.
+    #[must_use]
+    pub fn is_named(self) -> bool {
+        matches!(self, Self::Light | Self::Object | Self::Medium)
+    }
+
+    /// The keys that this kind takes.
+    #[must_use]
+    pub fn keys(self) -> Vec<Key> {
+        match self {
+            Self::Camera => camera(),
+            Self::Light => light(),
+            Self::Object => object(),
+            Self::Medium => medium(),
+            Self::Render => render(),
+        }
+    }
+}
+
+/// One key of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Key {
+    /// Its name.
+    pub name: &'static str,
+    /// The type of its value.
+    pub ty: Type,
+    /// Whether the block is wrong without it.
+    pub required: bool,
+    /// Meaning, unit and default.
+    pub doc: &'static str,
+}
+
+fn key(name: &'static str, ty: Type, doc: &'static str) -> Key {
+    Key { name, ty, required: false, doc }
+}
+
+fn required(name: &'static str, ty: Type, doc: &'static str) -> Key {
+    Key { name, ty, required: true, doc }
+}
+
+fn of_local(result: Type) -> Type {
+    Type::function(vec![Type::Local], result)
+}
+
+fn camera() -> Vec<Key> {
+    vec![
+        key("from", Type::Vec3, "position of the eye; default: frames the scene's bounds along -z"),
+        key("at", Type::Vec3, "point looked at; default: the centre of the scene's bounds"),
+        key("up", Type::Vec3, "direction that points up in the picture; default (0, 1, 0)"),
+        key("fov", Type::Angle, "vertical field of view; default 40deg"),
+    ]
+}
+
+fn light() -> Vec<Key> {
+    vec![
+        key(
+            "from",
+            Type::Vec3,
+            "direction towards a distant light; `color` is then the irradiance on a plane facing it",
+        ),
+        key("at", Type::Vec3, "position of a point light; `color` is then its radiant intensity"),
+        key("color", Type::Color, "colour and strength; default 1"),
+        key("shadows", Type::Bool, "whether surfaces and media block this light; default true"),
+        key("when", Type::Bool, "whether the light is on; default true"),
+    ]
+}
+
+fn object() -> Vec<Key> {
+    vec![
+        required("shape", Type::Shape, "the solid"),
+        key("material", Type::Material, "how its surface answers light; default diffuse(0.8)"),
+        key("when", Type::Bool, "whether the object is there; default true"),
+    ]
+}
+
+fn medium() -> Vec<Key> {
+    vec![
+        required("region", Type::Shape, "the solid that the medium fills"),
+        key("density", of_local(Type::Float), "density, negative values count as 0; default 1"),
+        key(
+            "scatter",
+            of_local(Type::Color),
+            "scattering coefficient per unit density and length; default 1",
+        ),
+        key("absorb", of_local(Type::Color), "absorption coefficient per unit density and length; default 0"),
+        key("emit", of_local(Type::Color), "emitted radiance per unit density and length; default 0"),
+        key("phase", Type::Phase, "phase function; default isotropic()"),
+        key("lighting", Type::String, "\"none\", \"unshadowed\" or \"shadowed\"; default \"shadowed\""),
+        key("when", Type::Bool, "whether the medium is there; default true"),
+    ]
+}
+
+fn render() -> Vec<Key> {
+    vec![
+        key("size", Type::Vec2, "width and height in pixels; default (960, 540)"),
+        key("background", Type::Color, "radiance where nothing is hit; default 0"),
+        key("ambient", Type::Color, "ambient light that `phong` multiplies with ka; default 1"),
+        key("duration", Type::Float, "length of the animation in seconds; default 0"),
+        key("fps", Type::Float, "frames per second; default 30"),
+    ]
+}

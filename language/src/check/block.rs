@@ -1,0 +1,164 @@
+//! Scene blocks against the table of [`crate::blocks`]: names, keys and the types of values.
+
+use super::Checker;
+use super::convert::Role;
+use crate::ast::{self, Entry, Expr, ExprKind, Name};
+use crate::blocks::{BLOCK_KINDS, BlockKind, Key};
+use crate::diag::Diagnostic;
+use crate::hir::{self, ExprId};
+use crate::source::Span;
+use crate::ty::Type;
+use std::collections::HashMap;
+
+/// What the values of `lighting` may be.
+pub(super) const LIGHTINGS: [&str; 3] = ["none", "unshadowed", "shadowed"];
+
+impl<'a> Checker<'a> {
+    /// Checks all blocks, in source order.
+    pub(super) fn check_blocks(&mut self, blocks: impl Iterator<Item = &'a ast::Block>) {
+        let mut unique: HashMap<BlockKind, Span> = HashMap::new();
+        let mut names: HashMap<&'a str, Span> = HashMap::new();
+        let mut shows_something = false;
+        for block in blocks {
+            let kind = BLOCK_KINDS.into_iter().find(|kind| kind.keyword() == block.keyword.text);
+            let Some(kind) = kind else {
+                self.report_kind(&block.keyword);
+                continue;
+            };
+            shows_something |= matches!(kind, BlockKind::Object | BlockKind::Medium);
+            if kind.is_named() {
+                self.check_block_name(block, &mut names);
+            } else {
+                self.check_unnamed(block);
+                match unique.get(&kind) {
+                    Some(&first) => self.report_second(block, first),
+                    None => {
+                        unique.insert(kind, block.keyword.span);
+                    }
+                }
+            }
+            self.check_block(block, kind);
+        }
+        if !shows_something {
+            let message = "the scene has nothing to draw: it has no object and no medium";
+            let error = Diagnostic::error("E0313", message, Span::default(), "nothing to draw");
+            self.report(error.with_help("add `object ball { shape: sphere(1) }`"));
+        }
+    }
+
+    fn report_kind(&mut self, keyword: &Name) {
+        let text = &keyword.text;
+        let keywords = BLOCK_KINDS.map(BlockKind::keyword);
+        let help = match self.suggest(text, |_| keywords.to_vec()) {
+            Some(near) => format!("did you mean `{near}`"),
+            None => format!("the blocks are `{}`", keywords.join("`, `")),
+        };
+        let message = format!("there is no block `{text}`");
+        self.report(Diagnostic::error("E0301", message, keyword.span, "no such block").with_help(help));
+    }
+
+    fn check_block_name(&mut self, block: &'a ast::Block, names: &mut HashMap<&'a str, Span>) {
+        let keyword = &block.keyword;
+        let Some(name) = &block.name else {
+            let message = format!("this {} has no name", keyword.text);
+            let error = Diagnostic::error("E0306", message, keyword.span, "a name is missing after this");
+            self.report(error.with_help(format!("write `{} my_{} {{ … }}`", keyword.text, keyword.text)));
+            return;
+        };
+        if let Some(&first) = names.get(name.text.as_str()) {
+            let message = format!("two blocks are called `{}`", name.text);
+            let error = Diagnostic::error("E0307", message, name.span, "used again here");
+            let error = error.with_label(first, "first used here");
+            self.report(error.with_help(format!("choose another name, such as `{}2`", name.text)));
+        } else {
+            names.insert(&name.text, name.span);
+        }
+    }
+
+    fn check_unnamed(&mut self, block: &ast::Block) {
+        if let Some(name) = &block.name {
+            let keyword = &block.keyword.text;
+            let message = format!("the {keyword} block has no name of its own");
+            let error = Diagnostic::error("E0306", message, name.span, "a name stands here");
+            self.report(error.with_help(format!("write `{keyword} {{ … }}`")));
+        }
+    }
+
+    fn report_second(&mut self, block: &ast::Block, first: Span) {
+        let keyword = &block.keyword;
+        let message = format!("a scene has one {} block", keyword.text);
+        let error = Diagnostic::error("E0305", message, keyword.span, "this is the second");
+        self.report(error.with_label(first, "this is the first").with_help("remove one of them"));
+    }
+
+    fn check_block(&mut self, block: &'a ast::Block, kind: BlockKind) {
+        let span = block.name.as_ref().map_or(block.keyword.span, |name| block.keyword.span.to(name.span));
+        let keys = kind.keys();
+        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let mut entries = Vec::with_capacity(block.entries.len());
+        for entry in &block.entries {
+            let Some(key) = keys.iter().find(|key| key.name == entry.key.text) else {
+                self.report_key(entry, kind, &keys);
+                continue;
+            };
+            let value = self.entry(&entry.value, key);
+            match seen.get(key.name) {
+                Some(&first) => self.report_key_twice(&entry.key, first),
+                None => {
+                    seen.insert(key.name, entry.key.span);
+                    entries.push((key.name, value));
+                }
+            }
+        }
+        for key in keys.iter().filter(|key| key.required && !seen.contains_key(key.name)) {
+            let message = format!("this {} has no `{}`", kind.keyword(), key.name);
+            let error = Diagnostic::error("E0304", message, span, format!("`{}` is missing", key.name));
+            self.report(error.with_help(format!("add `{}: …`, {}", key.name, key.doc)));
+        }
+        let name = block.name.as_ref().map_or_else(String::new, |name| name.text.clone());
+        let block = hir::Block { kind, name, entries, span };
+        self.check_rules(&block);
+        self.scene.blocks.push(block);
+    }
+
+    fn entry(&mut self, value: &'a Expr, key: &Key) -> ExprId {
+        if key.name == "lighting"
+            && let ExprKind::Name(word) = &value.kind
+            && LIGHTINGS.contains(&word.as_str())
+            && self.scope.find(word).is_none()
+            && !self.globals.contains_key(word.as_str())
+        {
+            let error =
+                Diagnostic::error("E0310", "the value of `lighting` is a text", value.span, "not in quotes");
+            self.report(error.with_help(format!("write `lighting: \"{word}\"`")));
+            return self.wrong(value.span);
+        }
+        self.expect(value, &key.ty, Role::Key(key.name))
+    }
+
+    fn report_key(&mut self, entry: &'a Entry, kind: BlockKind, keys: &[Key]) {
+        let text = &entry.key.text;
+        let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
+        let help = match self.suggest(text, |_| known.clone()) {
+            Some(near) => format!("did you mean `{near}`"),
+            None => format!("the keys are `{}`", known.join("`, `")),
+        };
+        let message = format!("a {} has no key `{text}`", kind.keyword());
+        self.report(Diagnostic::error("E0302", message, entry.key.span, "no such key").with_help(help));
+        // The value may have mistakes of its own, unless only its key could say what it is.
+        if !self.is_deferred(&entry.value) && !matches!(entry.value.kind, ExprKind::Record(_)) {
+            self.infer(&entry.value);
+        }
+    }
+
+    fn report_key_twice(&mut self, key: &Name, first: Span) {
+        let message = format!("`{}` is given twice", key.text);
+        let error = Diagnostic::error("E0303", message, key.span, "given again here");
+        self.report(error.with_label(first, "first given here").with_help("remove one of them"));
+    }
+
+    /// Whether an expression is present and free of errors.
+    pub(super) fn sound_entry(&self, block: &hir::Block, key: &str) -> Option<ExprId> {
+        block.entry(key).filter(|&value| *self.ty(value) != Type::Error)
+    }
+}

@@ -1,0 +1,139 @@
+//! What blocks ask for beyond keys and types: values that only make sense together or in a range.
+//!
+//! Values that are not known at compile time are let through where the language allows them.
+
+use super::Checker;
+use super::block::LIGHTINGS;
+use super::constant::{Constant, is_zero};
+use crate::blocks::BlockKind;
+use crate::diag::Diagnostic;
+use crate::hir::{Block, ExprId, ExprKind};
+use std::f64::consts::PI;
+
+/// Largest width and height of a picture, in pixels.
+const MAX_SIZE: f64 = 16384.0;
+
+impl Checker<'_> {
+    /// Checks a block whose entries have their types.
+    pub(super) fn check_rules(&mut self, block: &Block) {
+        match block.kind {
+            BlockKind::Camera => {
+                self.check_fov(block);
+                self.check_view(block);
+            }
+            BlockKind::Light => {
+                self.check_place(block);
+                self.check_direction(block);
+            }
+            BlockKind::Object => {}
+            BlockKind::Medium => self.check_lighting(block),
+            BlockKind::Render => {
+                self.check_size(block);
+                self.check_timing(block, "duration", "at least 0", |value| value >= 0.0);
+                self.check_timing(block, "fps", "more than 0", |value| value > 0.0);
+            }
+        }
+    }
+
+    fn entry_constant(&self, block: &Block, key: &str) -> Option<(ExprId, Constant)> {
+        let value = self.sound_entry(block, key)?;
+        Some((value, self.constant(value)?))
+    }
+
+    fn check_fov(&mut self, block: &Block) {
+        let Some(fov) = self.sound_entry(block, "fov") else { return };
+        // An animated field of view is checked when its frame is drawn.
+        let Some([angle, ..]) = self.constant(fov) else { return };
+        if angle > 0.0 && angle < PI {
+            return;
+        }
+        let message = "the field of view lies between 0deg and 180deg, both excluded";
+        let label = format!("this is {}deg", angle.to_degrees());
+        let error = Diagnostic::error("E0312", message, self.span(fov), label);
+        self.report(error.with_help("write `fov: 40deg`"));
+    }
+
+    fn check_view(&mut self, block: &Block) {
+        let (Some((_, from)), Some((at, target))) =
+            (self.entry_constant(block, "from"), self.entry_constant(block, "at"))
+        else {
+            return;
+        };
+        if from[..3] == target[..3] {
+            let message = "the camera looks at the place where it stands";
+            let error = Diagnostic::error("E0315", message, self.span(at), "the same as `from`");
+            self.report(error.with_help("choose another `from` or `at`"));
+        }
+    }
+
+    /// A light has a direction or a position.
+    fn check_place(&mut self, block: &Block) {
+        let (message, label) = match (block.entry("from"), block.entry("at")) {
+            (Some(_), None) | (None, Some(_)) => return,
+            (Some(_), Some(at)) => {
+                let message = "a light has either `from` or `at`, not both";
+                let error = Diagnostic::error("E0308", message, self.span(at), "the light has a `from`, too");
+                self.report(error.with_help("keep `from` for a distant light, `at` for a light at a place"));
+                return;
+            }
+            (None, None) => ("this light has neither `from` nor `at`", "where does it shine from"),
+        };
+        let error = Diagnostic::error("E0308", message, block.span, label);
+        self.report(error.with_help(
+            "add `from: (0, 1, 0)` for the direction towards a distant light, or `at: (0, 3, 0)` for a place",
+        ));
+    }
+
+    fn check_direction(&mut self, block: &Block) {
+        if let Some((from, value)) = self.entry_constant(block, "from")
+            && is_zero(value)
+        {
+            let message = "the direction towards a light is not zero";
+            let error = Diagnostic::error("E0309", message, self.span(from), "this is zero");
+            self.report(error.with_help("write `from: (0, 1, 0)` for light from above"));
+        }
+    }
+
+    fn check_lighting(&mut self, block: &Block) {
+        let Some(entry) = self.sound_entry(block, "lighting") else { return };
+        let mut value = entry;
+        while let ExprKind::Let(id) = self.scene.expr(value).kind {
+            value = self.scene.lets[id.index()].value;
+        }
+        let (message, label) = match &self.scene.expr(value).kind {
+            ExprKind::String(text) if LIGHTINGS.contains(&text.as_str()) => return,
+            ExprKind::String(text) => (format!("there is no lighting `{text}`"), "no such lighting"),
+            _ => ("the value of `lighting` is written out".to_owned(), "not a plain text"),
+        };
+        let error = Diagnostic::error("E0310", message, self.span(entry), label);
+        self.report(error.with_help("write `\"none\"`, `\"unshadowed\"` or `\"shadowed\"`"));
+    }
+
+    fn check_size(&mut self, block: &Block) {
+        let Some(size) = self.sound_entry(block, "size") else { return };
+        let label = match self.constant(size) {
+            None => "not a constant".to_owned(),
+            Some([width, height, ..]) => {
+                let fits = |x: f64| x.fract() == 0.0 && (1.0..=MAX_SIZE).contains(&x);
+                if fits(width) && fits(height) {
+                    return;
+                }
+                format!("this is {width} by {height}")
+            }
+        };
+        let message = "the size is two constant whole numbers from 1 to 16384";
+        let error = Diagnostic::error("E0311", message, self.span(size), label);
+        self.report(error.with_help("write `size: (960, 540)`"));
+    }
+
+    fn check_timing(&mut self, block: &Block, key: &'static str, range: &str, fits: impl Fn(f64) -> bool) {
+        if let Some((value, [number, ..])) = self.entry_constant(block, key)
+            && !fits(number)
+        {
+            let message = format!("`{key}` is {range}");
+            let error = Diagnostic::error("E0314", message, self.span(value), format!("this is {number}"));
+            let example = if key == "fps" { "fps: 30" } else { "duration: 10s" };
+            self.report(error.with_help(format!("write `{example}`")));
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Who uses whom: a walk over the untyped tree that resolves names, before any type is known.
+//!
+//! Out come the uses between top-level items, from which [`super::order`] makes the order of
+//! checking, and the warnings for bindings that nobody uses. The walk is a loop over a stack of
+//! steps, so a deep tree does no harm.
+
+use super::order::Use;
+use crate::ast::{Argument, Entry, Expr, ExprKind, File, Function, ItemKind, Name};
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use std::collections::{HashMap, HashSet};
+
+/// What the walk finds.
+pub(super) struct Uses {
+    /// For each item the items it uses, each once, with the first place.
+    pub(super) edges: Vec<Vec<Use>>,
+    /// Whether anything uses the item.
+    pub(super) used: Vec<bool>,
+    /// Parameters and block-local `let`s that nobody uses.
+    pub(super) warnings: Vec<Diagnostic>,
+}
+
+/// Walks all items of a file; `globals` says which name is which of the `count` items.
+pub(super) fn uses(file: &File, globals: &HashMap<&str, usize>, count: usize) -> Uses {
+    let mut found = Uses { edges: Vec::with_capacity(count), used: vec![false; count], warnings: Vec::new() };
+    for item in &file.items {
+        let mut walker = Walker {
+            globals,
+            scope: Default::default(),
+            bindings: vec![],
+            seen: Default::default(),
+            uses: vec![],
+            warnings: vec![],
+        };
+        match &item.kind {
+            ItemKind::Param(param) => {
+                walker.walk(vec![Step::Visit(&param.default)]);
+                if let Some((low, high)) = &param.range {
+                    walker.walk(vec![Step::Visit(low), Step::Visit(high)]);
+                }
+            }
+            ItemKind::Let(binding) => walker.walk(vec![Step::Visit(&binding.value)]),
+            ItemKind::Function(function) => walker.walk(function_steps(function)),
+            ItemKind::Block(block) => walker.walk(entry_steps(&block.entries)),
+        }
+        found.warnings.append(&mut walker.warnings);
+        for &(target, _) in &walker.uses {
+            found.used[target] = true;
+        }
+        if !matches!(item.kind, ItemKind::Block(_)) {
+            found.edges.push(walker.uses);
+        }
+    }
+    found
+}
+
+/// What a binding is called in a warning; bindings without a kind may stay unused.
+#[derive(Clone, Copy)]
+enum Kind {
+    Parameter,
+    Let,
+}
+
+/// One step of the walk; steps are taken from the end of a stack.
+enum Step<'a> {
+    Visit(&'a Expr),
+    Bind(&'a Name, Option<Kind>),
+    /// Ends the newest bindings.
+    Leave(usize),
+}
+
+struct Binding<'a> {
+    name: &'a Name,
+    kind: Option<Kind>,
+    used: bool,
+}
+
+struct Walker<'a, 'g> {
+    globals: &'g HashMap<&'a str, usize>,
+    /// Indices into `bindings` by name, innermost last.
+    scope: HashMap<&'a str, Vec<usize>>,
+    bindings: Vec<Binding<'a>>,
+    seen: HashSet<usize>,
+    uses: Vec<Use>,
+    warnings: Vec<Diagnostic>,
+}
+
+impl<'a> Walker<'a, '_> {
+    fn walk(&mut self, mut steps: Vec<Step<'a>>) {
+        while let Some(step) = steps.pop() {
+            match step {
+                Step::Visit(expr) => self.visit(expr, &mut steps),
+                Step::Bind(name, kind) => {
+                    self.scope.entry(&name.text).or_default().push(self.bindings.len());
+                    self.bindings.push(Binding { name, kind, used: false });
+                }
+                Step::Leave(count) => {
+                    for _ in 0..count {
+                        self.leave();
+                    }
+                }
+            }
+        }
+    }
+
+    /// Resolves the names of one expression and pushes the steps for what is inside, last first.
+    fn visit(&mut self, expr: &'a Expr, steps: &mut Vec<Step<'a>>) {
+        match &expr.kind {
+            ExprKind::Bool(_)
+            | ExprKind::Int(_)
+            | ExprKind::Float(_)
+            | ExprKind::Angle(_)
+            | ExprKind::Color(_)
+            | ExprKind::String(_) => {}
+            ExprKind::Name(name) => self.resolve(name, expr.span),
+            ExprKind::Tuple(parts) | ExprKind::List(parts) => steps.extend(parts.iter().map(Step::Visit)),
+            ExprKind::Comprehension { variable, range, body } => steps.extend([
+                Step::Leave(1),
+                Step::Visit(body),
+                Step::Bind(variable, None),
+                Step::Visit(range),
+            ]),
+            ExprKind::Range(a, b) | ExprKind::Binary(_, a, b) => {
+                steps.extend([Step::Visit(b), Step::Visit(a)]);
+            }
+            ExprKind::Unary(_, inner) | ExprKind::Field(inner, _) => steps.push(Step::Visit(inner)),
+            ExprKind::If(condition, yes, no) => {
+                steps.extend([Step::Visit(no), Step::Visit(yes), Step::Visit(condition)]);
+            }
+            ExprKind::Block(lets, value) => {
+                steps.extend([Step::Leave(lets.len()), Step::Visit(value)]);
+                for binding in lets.iter().rev() {
+                    steps.extend([Step::Bind(&binding.name, Some(Kind::Let)), Step::Visit(&binding.value)]);
+                }
+            }
+            ExprKind::Lambda(params, body) => {
+                steps.extend([Step::Leave(params.len()), Step::Visit(body)]);
+                steps.extend(params.iter().map(|name| Step::Bind(name, None)));
+            }
+            ExprKind::Call(callee, arguments) => {
+                steps.extend(argument_steps(arguments));
+                steps.push(Step::Visit(callee));
+            }
+            ExprKind::MethodCall(receiver, name, arguments) => {
+                self.resolve(&name.text, name.span);
+                steps.extend(argument_steps(arguments));
+                steps.push(Step::Visit(receiver));
+            }
+            ExprKind::Record(entries) => steps.extend(entry_steps(entries)),
+        }
+    }
+
+    fn resolve(&mut self, name: &str, span: Span) {
+        if let Some(&index) = self.scope.get(name).and_then(|indices| indices.last()) {
+            self.bindings[index].used = true;
+        } else if let Some(&item) = self.globals.get(name)
+            && self.seen.insert(item)
+        {
+            self.uses.push((item, span));
+        }
+    }
+
+    fn leave(&mut self) {
+        let Some(binding) = self.bindings.pop() else { return };
+        let name = binding.name.text.as_str();
+        if let Some(indices) = self.scope.get_mut(name) {
+            indices.pop();
+        }
+        if binding.used || name.starts_with('_') {
+            return;
+        }
+        let (code, what) = match binding.kind {
+            None => return,
+            Some(Kind::Parameter) => ("W0103", "parameter"),
+            Some(Kind::Let) => ("W0104", "binding"),
+        };
+        let warning = Diagnostic::warning(
+            code,
+            format!("the {what} `{name}` is never used"),
+            binding.name.span,
+            "never used",
+        );
+        self.warnings.push(warning.with_help(format!("remove it, or call it `_{name}`")));
+    }
+}
+
+/// Defaults see no parameters; the body sees all of them.
+fn function_steps(function: &Function) -> Vec<Step<'_>> {
+    let mut steps = vec![Step::Leave(function.params.len()), Step::Visit(&function.body)];
+    steps.extend(function.params.iter().rev().map(|param| Step::Bind(&param.name, Some(Kind::Parameter))));
+    steps.extend(function.params.iter().rev().filter_map(|param| param.default.as_ref()).map(Step::Visit));
+    steps
+}
+
+fn entry_steps(entries: &[Entry]) -> Vec<Step<'_>> {
+    entries.iter().rev().map(|entry| Step::Visit(&entry.value)).collect()
+}
+
+fn argument_steps(arguments: &[Argument]) -> impl Iterator<Item = Step<'_>> {
+    arguments.iter().rev().map(|argument| Step::Visit(&argument.value))
+}

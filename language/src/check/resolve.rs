@@ -1,0 +1,137 @@
+//! Names: what they stand for, and making new ones.
+
+use super::constant::Constant;
+use super::item::Kind;
+use super::{BUILT_IN_VALUES, Checker, construct};
+use crate::ast::Name;
+use crate::diag::Diagnostic;
+use crate::hir::{self, ExprId, LocalId};
+use crate::source::Span;
+use crate::ty::Type;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+impl<'a> Checker<'a> {
+    /// A name used as a value.
+    pub(super) fn name(&mut self, name: &'a str, span: Span) -> ExprId {
+        if let Some(local) = self.scope.find(name) {
+            let ty = self.scope.local(local).ty.clone();
+            return if ty == Type::Error {
+                self.wrong(span)
+            } else {
+                self.push(hir::ExprKind::Local(local), ty, span)
+            };
+        }
+        if let Some(&index) = self.globals.get(name) {
+            return self.global(name, index, span);
+        }
+        match name {
+            "time" => self.push(hir::ExprKind::Time, Type::Float, span),
+            "frame" => self.push(hir::ExprKind::Frame, Type::Int, span),
+            "pi" => self.push(hir::ExprKind::Number(PI), Type::Float, span),
+            "tau" => self.push(hir::ExprKind::Number(TAU), Type::Float, span),
+            _ if self.builtins.contains_key(name) || construct::is_constructor(name) => {
+                self.uncalled(name, span)
+            }
+            _ => self.unknown_name(name, span),
+        }
+    }
+
+    fn global(&mut self, name: &str, index: usize, span: Span) -> ExprId {
+        match &self.items[index].kind {
+            Kind::Param { id, .. } => {
+                let (id, ty) = (*id, self.scene.params[id.index()].ty.clone());
+                if ty == Type::Error {
+                    self.wrong(span)
+                } else {
+                    self.push(hir::ExprKind::Param(id), ty, span)
+                }
+            }
+            Kind::Let { id: Some(id), .. } => {
+                let id = *id;
+                let ty = self.ty(self.scene.lets[id.index()].value).clone();
+                if ty == Type::Error { self.wrong(span) } else { self.push(hir::ExprKind::Let(id), ty, span) }
+            }
+            // Part of a cycle; reported.
+            Kind::Let { id: None, .. } => self.wrong(span),
+            Kind::Function { .. } => self.uncalled(name, span),
+        }
+    }
+
+    fn uncalled(&mut self, name: &str, span: Span) -> ExprId {
+        let message = format!("the function `{name}` stands where a value is expected");
+        let error = Diagnostic::error("E0217", message, span, "not called");
+        let form = self.form_of(name).unwrap_or_else(|| format!("{name}(…)"));
+        self.report(error.with_help(format!("call it: `{form}`")));
+        self.wrong(span)
+    }
+
+    fn unknown_name(&mut self, name: &str, span: Span) -> ExprId {
+        let known = |checker: &Self| {
+            let names = checker.scope.names().chain(checker.globals.keys().copied());
+            names.chain(BUILT_IN_VALUES).collect()
+        };
+        let help = match self.suggest(name, known) {
+            Some(near) => format!("did you mean `{near}`"),
+            None => format!("define it: `let {name} = …`"),
+        };
+        let error = Diagnostic::error("E0201", format!("`{name}` is not defined"), span, "no such name");
+        self.report(error.with_help(help));
+        self.wrong(span)
+    }
+
+    /// Reports a call of something that does not exist.
+    pub(super) fn unknown_function(&mut self, name: &str, span: Span) {
+        let known = |checker: &Self| {
+            let users = checker.items.iter().filter(|item| matches!(item.kind, Kind::Function { .. }));
+            let users = users.map(|item| item.name.text.as_str());
+            users.chain(checker.builtins.keys().copied()).chain(construct::NAMES).collect()
+        };
+        let help = match self.suggest(name, known) {
+            Some(near) => format!("did you mean `{near}`"),
+            None => format!("define it: `fn {name}(x: float) -> float {{ … }}`"),
+        };
+        let error =
+            Diagnostic::error("E0201", format!("there is no function `{name}`"), span, "no such function");
+        self.report(error.with_help(help));
+    }
+
+    /// Makes a visible binding; the names of built-in values stay theirs.
+    pub(super) fn bind(&mut self, name: &'a Name, ty: Type, constant: Option<Constant>) -> LocalId {
+        if BUILT_IN_VALUES.contains(&name.text.as_str()) {
+            self.report_taken(name);
+        }
+        self.scope.bind(&name.text, ty, constant)
+    }
+
+    /// Reports a definition of a name that the language or its library has.
+    pub(super) fn report_taken(&mut self, name: &Name) {
+        let text = &name.text;
+        let what = if BUILT_IN_VALUES.contains(&text.as_str()) { "value" } else { "function" };
+        let message = format!("`{text}` is a built-in {what} and cannot be defined anew");
+        let error = Diagnostic::error("E0203", message, name.span, "this name is taken");
+        self.report(error.with_help(format!("choose another name, such as `my_{text}`")));
+    }
+
+    /// Reports names that stand twice in one list of bindings.
+    pub(super) fn report_repeats(&mut self, names: impl Iterator<Item = &'a Name>) {
+        let mut seen: HashMap<&str, Span> = HashMap::new();
+        for name in names {
+            match seen.get(name.text.as_str()) {
+                Some(&first) => self.report_twice(name, first),
+                None => {
+                    seen.insert(&name.text, name.span);
+                }
+            }
+        }
+    }
+
+    /// Reports the second definition of a name.
+    pub(super) fn report_twice(&mut self, name: &Name, first: Span) {
+        let text = &name.text;
+        let error =
+            Diagnostic::error("E0202", format!("`{text}` is defined twice"), name.span, "defined again here");
+        let error = error.with_label(first, "first defined here");
+        self.report(error.with_help(format!("choose another name, such as `{text}2`")));
+    }
+}

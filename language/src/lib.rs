@@ -1,0 +1,47 @@
+//! The `.vol` language: source text in, typed scene out.
+//!
+//! ```text
+//! text ──parse──► ast::File ──check──► hir::Scene
+//! ```
+//!
+//! Comes in: a [`source::SourceFile`] and the [`library::Library`] of built-in functions that the
+//! compiler offers. Goes out: a [`hir::Scene`] in which every name is resolved and every
+//! expression typed, and the [`diag::Diagnostic`]s of all mistakes found.
+//!
+//! This crate reads no files, prints nothing and never panics on a scene's text.
+
+pub mod ast;
+pub mod blocks;
+pub mod check;
+pub mod diag;
+pub mod hir;
+pub mod library;
+pub mod nearest;
+pub mod parse;
+pub mod source;
+pub mod ty;
+
+use diag::Diagnostic;
+use library::Library;
+use source::SourceFile;
+
+/// Codes that a lost item causes elsewhere: names that only it defines, and all that is then missing
+/// or unused.
+const FOLLOW_UPS: [&str; 8] = ["E0201", "E0304", "E0308", "E0313", "W0101", "W0102", "W0103", "W0104"];
+
+/// Parses and checks one file.
+///
+/// The scene is present whenever it is free of errors; warnings may stand beside it. An item with a
+/// syntax error is left out of the check, and messages that only its absence causes are dropped.
+#[must_use]
+pub fn analyse(file: &SourceFile, library: &Library) -> (Option<hir::Scene>, Vec<Diagnostic>) {
+    let (ast, mut diagnostics) = parse::parse(file);
+    let (scene, mut found) = check::check(&ast, library);
+    if diagnostics.iter().any(Diagnostic::is_error) {
+        found.retain(|diagnostic| !FOLLOW_UPS.contains(&diagnostic.code));
+    }
+    diagnostics.extend(found);
+    diagnostics.sort_by_key(|d| d.labels.first().map_or(0, |label| label.span.start));
+    let failed = diagnostics.iter().any(Diagnostic::is_error);
+    ((!failed).then_some(scene), diagnostics)
+}

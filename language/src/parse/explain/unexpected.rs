@@ -1,0 +1,163 @@
+//! "expected …, found …": the grammar's dead ends in words.
+
+use super::quoted;
+use crate::diag::Diagnostic;
+use crate::parse::scan::{Kind, Token};
+use crate::source::Span;
+
+/// Stands for anything that may follow a complete expression.
+pub(in crate::parse) const OPERATOR: &str = "an operator";
+
+/// Where the grammar got stuck.
+pub(in crate::parse) struct Place<'a> {
+    /// The whole text.
+    pub(in crate::parse) text: &'a str,
+    /// The tokens that the grammar read.
+    pub(in crate::parse) tokens: &'a [Token],
+    /// `entry` or `item`.
+    pub(in crate::parse) unit: &'static str,
+    /// Byte in the file.
+    pub(in crate::parse) offset: usize,
+    /// What would have fitted, in words; see `lower/words.rs`.
+    pub(in crate::parse) expected: Vec<&'static str>,
+}
+
+/// The message about text that the grammar does not take.
+pub(in crate::parse) fn unexpected(place: &Place<'_>) -> Diagnostic {
+    let index = place.tokens.partition_point(|token| token.end as usize <= place.offset);
+    let expected = place.expected(index);
+    let list = join(&expected);
+    let diagnostic = match (place.tokens.get(index), index.checked_sub(1).map(|i| &place.tokens[i])) {
+        (Some(found), _) => {
+            let message = format!("expected {list}, found {}", describe(found, place.text));
+            Diagnostic::error("E0102", message, found.span(), "not expected here")
+        }
+        (None, Some(last)) => {
+            let message = format!("expected {list} after {}", describe(last, place.text));
+            Diagnostic::error("E0102", message, last.span(), format!("the {} ends here", place.unit))
+        }
+        (None, None) => {
+            Diagnostic::error("E0102", format!("expected {list}"), Span::new(place.offset, place.offset), "")
+        }
+    };
+    match place.help(index, &expected) {
+        Some(help) => diagnostic.with_help(help),
+        None => diagnostic,
+    }
+}
+
+fn describe(token: &Token, text: &str) -> String {
+    match token.kind {
+        Kind::Text => "a string".to_owned(),
+        _ => quoted(token.text(text)),
+    }
+}
+
+fn join(words: &[&str]) -> String {
+    match words {
+        [] => "something else".to_owned(),
+        [word] => (*word).to_owned(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+impl Place<'_> {
+    /// What the user could write before token `index`, most telling words only.
+    fn expected(&self, index: usize) -> Vec<&'static str> {
+        let mut words: Vec<&'static str> = Vec::new();
+        for &word in &self.expected {
+            if !word.is_empty() && !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        if let Some(whole) = words.iter().find(|word| matches!(**word, "an expression" | "a type")) {
+            return vec![*whole];
+        }
+        if index == 0 && self.unit == "entry" {
+            return vec!["a key"];
+        }
+        let follows_expression = words.contains(&OPERATOR);
+        words.retain(|word| *word != OPERATOR);
+        if follows_expression && words.is_empty() {
+            words.extend(self.closers(index));
+        }
+        words
+    }
+
+    /// The bracket around the place before token `index`.
+    fn open_bracket(&self, index: usize) -> Option<usize> {
+        let depth = match self.tokens.get(index) {
+            Some(token) => token.depth + u16::from(token.kind == Kind::Close),
+            None => return None,
+        };
+        let before = self.tokens[..index].iter();
+        before
+            .rev()
+            .position(|token| token.kind == Kind::Open && token.depth + 1 == depth)
+            .map(|i| index - 1 - i)
+    }
+
+    /// What may follow a complete expression, besides operators.
+    fn closers(&self, index: usize) -> &'static [&'static str] {
+        let Some(open) = self.open_bracket(index) else {
+            return match self.unit {
+                "entry" => &["a new line", "`,`"],
+                _ => &["the next item"],
+            };
+        };
+        match self.tokens[open].text(self.text) {
+            "(" => &["`,`", "`)`"],
+            "[" => &["`,`", "`]`"],
+            _ if self.word_at(open + 2) == ":" => &["`,`", "`}`"],
+            _ => &["`}`"],
+        }
+    }
+
+    /// Whether the place lies directly in `{ let … }`.
+    fn is_in_block(&self, index: usize) -> bool {
+        self.open_bracket(index).is_some_and(|open| self.word_at(open + 1) == "let")
+    }
+
+    fn word_at(&self, index: usize) -> &str {
+        self.tokens.get(index).map_or("", |token| token.text(self.text))
+    }
+
+    /// What to type, for the mistakes that people make.
+    fn help(&self, index: usize, expected: &[&str]) -> Option<String> {
+        let found = self.word_at(index);
+        let starts_line = self.tokens.get(index).is_some_and(|token| token.starts_line);
+        let is_number = self.tokens.get(index).is_some_and(|token| token.kind == Kind::Number);
+        let wants = |word: &str| expected.contains(&word);
+        let help = match found {
+            "(" if starts_line => "write `(` on the line above to call, or `,` before it",
+            "-" if starts_line => "write `-` at the end of the line above to subtract",
+            "=" if wants("`:`") => "write `:` instead of `=`",
+            "=" if self.expected.contains(&OPERATOR) => "write `==` to compare",
+            "," if wants("an expression") && self.is_in_block(index) => "separate `let`s by new lines",
+            ":" if wants("`=`") && self.word_at(0) == "let" => {
+                "a `let` states no type: write `let name = value`"
+            }
+            ":" if wants("`=`") => "write `name: type = value`",
+            "=" if wants("`->`") => "write the type of the result: `-> float`",
+            ".." => "write a range only after `in`: `[for i in 0..10: …]`",
+            _ if is_number && found.starts_with('.') => {
+                "write the parts of a vector as `v.x`, `v.y` and `v.z`"
+            }
+            "->" => "write a function as `x => …`",
+            "let" | "if" | "then" | "else" | "for" | "in" | "true" | "false" | "fn" | "param" | "import"
+                if wants("a name") || wants("a key") =>
+            {
+                return Some(format!("`{found}` is a word of the language: choose another name"));
+            }
+            "{" if wants("`->`") => "write the type of the result: `-> float {`",
+            _ if wants("`else`") => "write both branches: `if condition then a else b`",
+            _ if wants("`then`") => "write `if condition then a else b`",
+            _ if wants("`=`") && self.word_at(0) == "param" => "write `param name: float = 1 in 0..2`",
+            _ if wants("`:`") && self.word_at(0) == "param" => "write `param name: float = 1 in 0..2`",
+            _ if wants("`:`") && self.unit == "entry" => "write an entry as `key: value`",
+            _ if index == 0 && is_number => "write a vector in brackets: `(1, 2, 3)`",
+            _ => return None,
+        };
+        Some(help.to_owned())
+    }
+}

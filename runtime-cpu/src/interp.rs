@@ -1,0 +1,133 @@
+//! Evaluates a program's functions for many points at once, in f32.
+//!
+//! ```text
+//! Program ──► Tapes          registers allocated once, shared by all threads
+//!                └─ + Frame ──► Evaluator   registers of its own, one per thread
+//!                                  └─ evaluate(function, inputs, outputs)
+//! ```
+//!
+//! In: one slice per argument, all of one length. Out: one slice per output. Points are taken
+//! [`LANES`] at a time; a register holds one value for each of them, so that the cost of looking at
+//! an operation is shared and its loop ([`batch`]) vectorises. The results of a point depend on that
+//! point alone: bit for bit the same in any company and any batch size.
+//!
+//! Truth values are 0 and 1 in registers like all others.
+
+pub(crate) mod batch;
+
+use batch::Lanes;
+use std::array;
+use vol_compiler::curve::CurveTable;
+use vol_compiler::frame::Frame;
+use vol_compiler::ir::{FunctionId, Module};
+use vol_compiler::ops::MAX_RESULTS;
+use vol_compiler::program::Program;
+use vol_compiler::tape::{Tape, TapeOp};
+
+/// Points that go through a tape together.
+pub const LANES: usize = 64;
+
+/// The tapes of all functions of a program.
+#[derive(Clone, Debug)]
+pub struct Tapes {
+    tapes: Vec<Tape>,
+}
+
+impl Tapes {
+    /// Prepares a program.
+    #[must_use]
+    pub fn new(program: &Program) -> Self {
+        Self::of_module(&program.module)
+    }
+
+    /// Prepares a verified module.
+    #[must_use]
+    pub fn of_module(module: &Module) -> Self {
+        Self { tapes: module.functions.iter().map(Tape::new).collect() }
+    }
+
+    /// The tape of one function.
+    #[must_use]
+    pub fn tape(&self, function: FunctionId) -> &Tape {
+        &self.tapes[function.index()]
+    }
+}
+
+/// Evaluates functions in one frame; one thread's own.
+#[derive(Debug)]
+pub struct Evaluator<'a> {
+    tapes: &'a Tapes,
+    uniforms: &'a [f32],
+    curves: &'a [CurveTable],
+    #[expect(clippy::vec_box, reason = "a result changes places with a register instead of being copied")]
+    registers: Vec<Box<Lanes>>,
+    results: [Box<Lanes>; MAX_RESULTS],
+}
+
+impl<'a> Evaluator<'a> {
+    /// An evaluator of the program's functions in one of its frames.
+    #[must_use]
+    pub fn new(tapes: &'a Tapes, frame: &'a Frame) -> Self {
+        Self::of_parts(tapes, &frame.uniforms_f32, &frame.curve_tables)
+    }
+
+    /// An evaluator that knows only what functions can read of a frame.
+    #[must_use]
+    pub fn of_parts(tapes: &'a Tapes, uniforms: &'a [f32], curves: &'a [CurveTable]) -> Self {
+        let most = tapes.tapes.iter().map(|tape| tape.registers as usize).max().unwrap_or(0);
+        let registers = (0..most).map(|_| Box::default()).collect();
+        Self { tapes, uniforms, curves, registers, results: array::from_fn(|_| Box::default()) }
+    }
+
+    /// Evaluates a function at as many points as the slices are long.
+    ///
+    /// `inputs` has one slice per argument, `outputs` one per output (or fewer: the first ones).
+    ///
+    /// # Panics
+    ///
+    /// If slices are missing or differ in length.
+    pub fn evaluate(&mut self, function: FunctionId, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
+        let tape = self.tapes.tape(function);
+        let count = outputs.first().map_or(0, |output| output.len());
+        let lengths = inputs.iter().map(|input| input.len()).chain(outputs.iter().map(|output| output.len()));
+        assert!(
+            inputs.len() >= tape.inputs as usize && outputs.len() <= tape.outputs.len(),
+            "wrong number of slices"
+        );
+        assert!(lengths.into_iter().all(|length| length == count), "slices differ in length");
+        for start in (0..count).step_by(LANES) {
+            let points = start..count.min(start + LANES);
+            for step in &tape.ops {
+                self.step(step, inputs, points.clone());
+            }
+            for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
+                let values = &self.registers[register.index()].0;
+                output[points.clone()].copy_from_slice(&values[..points.len()]);
+            }
+        }
+    }
+
+    fn step(&mut self, step: &TapeOp, inputs: &[&[f32]], points: std::ops::Range<usize>) {
+        let n = points.len();
+        match *step {
+            TapeOp::Constant { to, value } => {
+                self.registers[to.index()].0[..n].fill(value);
+            }
+            TapeOp::Uniform { to, index } => {
+                self.registers[to.index()].0[..n].fill(self.uniforms[index as usize]);
+            }
+            TapeOp::Input { to, index } => {
+                self.registers[to.index()].0[..n].copy_from_slice(&inputs[index as usize][points]);
+            }
+            TapeOp::Apply { op, data, to, args } => {
+                let args = args.map(|register| &self.registers[register.index()].0[..n]);
+                let written = batch::apply(op, data, &args, &mut self.results, self.curves);
+                let registers = &mut self.registers[to.index()..to.index() + written];
+                registers.swap_with_slice(&mut self.results[..written]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

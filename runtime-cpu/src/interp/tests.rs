@@ -1,0 +1,172 @@
+use super::*;
+use vol_compiler::curve::{Quadratic, prepare};
+use vol_compiler::error_bound;
+use vol_compiler::ir::verify::random::{self, Random, Shape};
+use vol_compiler::ir::{Function, text};
+
+const UNIFORMS: [f32; 4] = [0.75, -1.5, 2.0, 0.1];
+
+fn curves() -> Vec<Vec<Quadratic>> {
+    let arch = Quadratic { a: [0.0; 3], b: [0.0, 1.0, 0.5], c: [1.0, 2.0, -0.5] };
+    let back = Quadratic { a: [1.0, 2.0, -0.5], b: [2.0, 3.0, 0.0], c: [-1.0, 1.0, 3.0] };
+    let line = Quadratic { a: [-2.0, 0.0, 0.0], b: [0.0, 0.5, 0.0], c: [2.0, 1.0, 0.0] };
+    vec![vec![arch, back], vec![line]]
+}
+
+fn tables() -> Vec<CurveTable> {
+    curves().iter().map(|segments| prepare(segments)).collect()
+}
+
+fn module(functions: Vec<Function>) -> Module {
+    Module { functions, ..Module::default() }
+}
+
+/// Arguments for `count` points, one vector per argument.
+fn arguments(seed: u64, count: usize, inputs: u32) -> Vec<Vec<f32>> {
+    let mut random = Random::new(seed);
+    (0..inputs).map(|_| (0..count).map(|_| random.between(-4.0, 4.0) as f32).collect()).collect()
+}
+
+/// Outputs at all points, evaluated `batch` points at a time.
+fn evaluate(module: &Module, inputs: &[Vec<f32>], batch: usize) -> Vec<Vec<f32>> {
+    let (tapes, tables) = (Tapes::of_module(module), tables());
+    let mut evaluator = Evaluator::of_parts(&tapes, &UNIFORMS, &tables);
+    let count = inputs[0].len();
+    let mut all = vec![vec![0.0; count]; module.functions[0].outputs.len()];
+    for start in (0..count).step_by(batch) {
+        let points = start..count.min(start + batch);
+        let slices: Vec<&[f32]> = inputs.iter().map(|input| &input[points.clone()]).collect();
+        let mut outputs: Vec<&mut [f32]> = all.iter_mut().map(|output| &mut output[points.clone()]).collect();
+        evaluator.evaluate(FunctionId(0), &slices, &mut outputs);
+    }
+    all
+}
+
+/// NaNs are all alike: their bits are not part of any promise.
+fn bits(values: &[Vec<f32>]) -> Vec<u32> {
+    values.iter().flatten().map(|x| if x.is_nan() { u32::MAX } else { x.to_bits() }).collect()
+}
+
+#[test]
+fn values_do_not_depend_on_the_batch() {
+    for seed in 0..60 {
+        let shape = Shape { operations: 40, tame: seed % 2 == 0, ..Shape::default() };
+        let module = module(vec![random::function(seed, &shape)]);
+        let inputs = arguments(seed, 200, shape.inputs);
+        let whole = bits(&evaluate(&module, &inputs, 200));
+        for batch in [1, 3, 64, 65, 127] {
+            assert_eq!(
+                bits(&evaluate(&module, &inputs, batch)),
+                whole,
+                "{}",
+                text::print_function(&module.functions[0])
+            );
+        }
+    }
+}
+
+#[test]
+fn the_choices_of_special_values() {
+    let body = "fn f(2) {\n%0 = input 0\n%1 = input 1\n%2 = min %0 %1\n%3 = max %0 %1\n%4 = sqrt %0\n%5 = less %0 %1\n\
+        %6 = not %5\n%7 = or %5 %6\n%8 = and %5 %6\n%9 = select %7 %0 %1\n%10 = select %8 %0 %1\nreturn %2 %3 %4 %9 %10\n}";
+    let module = module(vec![text::parse_function(body).expect("well-formed text")]);
+    let inputs = [vec![0.0, -0.0, -4.0, 4.0], vec![-0.0, 0.0, 1.0, 1.0]];
+    let found = evaluate(&module, &inputs, 4);
+    let expected = [
+        vec![-0.0, 0.0, -4.0, 1.0],
+        vec![-0.0, 0.0, 1.0, 4.0],
+        vec![0.0, 0.0, 0.0, 2.0],
+        inputs[0].clone(),
+        inputs[1].clone(),
+    ];
+    assert_eq!(bits(&found), bits(&expected));
+}
+
+#[test]
+fn functions_share_the_registers_of_an_evaluator() {
+    let small = text::parse_function("fn a(1) {\n%0 = input 0\n%1 = add %0 %0\nreturn %1\n}")
+        .expect("well-formed text");
+    let module = module(vec![small, random::function(3, &Shape::default())]);
+    let (tapes, tables) = (Tapes::of_module(&module), tables());
+    let mut evaluator = Evaluator::of_parts(&tapes, &UNIFORMS, &tables);
+    let inputs = [[1.0_f32, 2.0].as_slice(), &[3.0, 4.0], &[5.0, 6.0]];
+    let mut first = [[0.0; 2]; 3];
+    evaluator.evaluate(FunctionId(1), &inputs, &mut first.each_mut().map(|o| o.as_mut_slice()));
+    let mut doubled = [0.0; 2];
+    evaluator.evaluate(FunctionId(0), &inputs[..1], &mut [&mut doubled]);
+    assert_eq!(doubled, [2.0, 4.0]);
+    let mut second = [[0.0; 2]; 3];
+    evaluator.evaluate(FunctionId(1), &inputs, &mut second.each_mut().map(|o| o.as_mut_slice()));
+    assert_eq!(first.map(|o| o.map(f32::to_bits)), second.map(|o| o.map(f32::to_bits)));
+}
+
+#[test]
+fn closest_points_are_those_of_the_kernel() {
+    let body = "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = closest[0] %0 %1 %2\n%4 = extract %3 0\n\
+        %5 = extract %3 3\n%6 = extract %3 7\n%7 = extract %3 5\nreturn %4 %5 %6 %7\n}";
+    let module = module(vec![text::parse_function(body).expect("well-formed text")]);
+    let inputs = arguments(8, 100, 3);
+    let found = evaluate(&module, &inputs, 100);
+    let table = &tables()[0];
+    for i in 0..100 {
+        let expected = crate::math::curve::closest([inputs[0][i], inputs[1][i], inputs[2][i]], &table.pieces);
+        let expected = [expected.t, expected.x, expected.stretch, expected.distance];
+        assert_eq!([found[0][i], found[1][i], found[2][i], found[3][i]], expected);
+    }
+}
+
+#[test]
+fn noise_is_that_of_the_kernels() {
+    use crate::math::noise;
+    for seed in [0, 9] {
+        let body = format!(
+            "fn f(4) {{\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = input 3\n%4 = constant 1.9\n%5 = constant -0.6\n\
+             %6 = perlin[{seed}] %0 %1 %2\n%7 = perlin_gradient[{seed}] %0 %1 %2\n%8 = extract %7 2\n\
+             %9 = fbm[{seed}] %0 %1 %2 %3 %4 %5\n%10 = fbm_gradient[{seed}] %0 %1 %2 %3 %4 %5\n%11 = extract %10 0\n\
+             %12 = extract %10 3\nreturn %6 %8 %9 %11 %12\n}}"
+        );
+        let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
+        let inputs = arguments(seed.into(), 150, 4);
+        let found = evaluate(&module, &inputs, 150);
+        for i in 0..150 {
+            let (p, octaves) = ([inputs[0][i], inputs[1][i], inputs[2][i]], inputs[3][i]);
+            let sums = noise::fbm_gradient(p, octaves, 1.9, -0.6, seed);
+            let gradient = noise::perlin_gradient(p, seed);
+            let sum = noise::fbm(p, octaves, 1.9, -0.6, seed);
+            let expected = [noise::perlin(p, seed), gradient[2], sum, sums[0], sums[3]];
+            assert_eq!(
+                array::from_fn(|k| found[k][i].to_bits()),
+                expected.map(f32::to_bits),
+                "{p:?} {octaves}"
+            );
+        }
+    }
+}
+
+#[test]
+fn values_are_within_the_error_bound_of_the_reference() {
+    let (mut decided, mut all) = (0, 0);
+    for seed in 0..300 {
+        let shape = Shape { operations: 4 + (seed % 12) as u32, tame: true, ..Shape::default() };
+        let function = random::function(seed, &shape);
+        let module = module(vec![function.clone()]);
+        let inputs = arguments(seed, 40, shape.inputs);
+        let found = evaluate(&module, &inputs, 40);
+        for i in 0..40 {
+            let point: Vec<f32> = inputs.iter().map(|input| input[i]).collect();
+            let expected = error_bound::evaluate(&function, &point, &UNIFORMS.map(f64::from), &curves());
+            for (output, bounded) in found.iter().zip(expected) {
+                let distance = (f64::from(output[i]) - bounded.value).abs();
+                all += 1;
+                decided += u32::from(bounded.error.is_finite());
+                assert!(
+                    distance <= bounded.error || bounded.error.is_infinite() || bounded.error.is_nan(),
+                    "{} at {point:?}: {} is not {bounded:?}",
+                    text::print_function(&function),
+                    output[i],
+                );
+            }
+        }
+    }
+    assert!(decided * 2 > all, "{decided} of {all} are decided");
+}

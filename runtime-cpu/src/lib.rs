@@ -1,0 +1,21 @@
+//! Renders a compiled program on the CPU.
+//!
+//! ```text
+//! Program ──interp::Tapes──► Evaluator (batches of points, f32)  ┐
+//!    └──────reference::evaluate (one point, f64)                 ┴─► render: tiles ─► rays ─► Image
+//! ```
+//!
+//! * [`interp`] evaluates the program's functions for many points at once, with the kernels of
+//!   [`math`].
+//! * [`render`] is the integrator: what a picture means. Its twin for the GPU is
+//!   `compiler/src/wgsl/render.wgsl` with its folder: same function names, same step comments.
+//!
+//! A picture does not depend on the number of threads, the order of the tiles or the sizes of the
+//! batches: bit for bit.
+
+pub mod interp;
+pub mod math;
+mod real;
+pub mod render;
+
+pub use render::{Stats, StepChoice, choose_step, render, render_reference};

@@ -1,0 +1,229 @@
+//! The numbers that a picture is made of: f32 for pictures, f64 for the reference.
+//!
+//! The integrator is written once over [`Real`]. In f32 every operation is the one that the WGSL
+//! twin does, each rounded by itself; in f64 the elementary functions are those of the standard
+//! library, so the reference shares the integrator's rules but none of its approximations.
+
+use crate::math::fun;
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number type of the integrator.
+pub(crate) trait Real:
+    Copy
+    + Debug
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// 0
+    const ZERO: Self;
+    /// 1
+    const ONE: Self;
+    /// An f32 as it is.
+    fn from_f32(value: f32) -> Self;
+    /// A whole number below 2^24.
+    fn from_index(index: i32) -> Self;
+    /// A whole number below 2^24 as an integer.
+    fn to_index(self) -> i32;
+    /// Square root; not of negative numbers.
+    fn sqrt(self) -> Self;
+    /// The largest whole number not above.
+    fn floor(self) -> Self;
+    /// 2^x
+    fn exp2(self) -> Self;
+    /// Base-2 logarithm of a positive number.
+    fn log2(self) -> Self;
+    /// exp(-x), x >= 0.
+    fn decay(self) -> Self;
+    /// (1 - exp(-x)) / x for x >= 0, 1 at 0: the mean transmittance over an optical depth x.
+    fn mean_decay(self) -> Self;
+
+    /// The smaller, the second on a tie.
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    /// The larger, the second on a tie.
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+
+    /// Without its sign.
+    fn abs(self) -> Self {
+        if self < Self::ZERO { -self } else { self }
+    }
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+
+    fn from_f32(value: f32) -> Self {
+        value
+    }
+
+    fn from_index(index: i32) -> Self {
+        index as Self
+    }
+
+    fn to_index(self) -> i32 {
+        self as i32
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn floor(self) -> Self {
+        self.floor()
+    }
+
+    fn exp2(self) -> Self {
+        fun::exp2(self)
+    }
+
+    fn log2(self) -> Self {
+        fun::log2(self)
+    }
+
+    fn decay(self) -> Self {
+        fun::exp2(self * -std::f32::consts::LOG2_E)
+    }
+
+    fn mean_decay(self) -> Self {
+        let x = self;
+        if x < 0.35 {
+            // The series of algorithms.md §7.3, where 1 - exp(-x) would cancel.
+            let tail = x * (1.0 / 120.0 - x * (1.0 / 720.0));
+            1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0 - tail)))
+        } else {
+            (1.0 - x.decay()) / x
+        }
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+
+    fn from_f32(value: f32) -> Self {
+        Self::from(value)
+    }
+
+    fn from_index(index: i32) -> Self {
+        Self::from(index)
+    }
+
+    fn to_index(self) -> i32 {
+        self as i32
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn floor(self) -> Self {
+        self.floor()
+    }
+
+    fn exp2(self) -> Self {
+        self.exp2()
+    }
+
+    fn log2(self) -> Self {
+        self.log2()
+    }
+
+    fn decay(self) -> Self {
+        (-self).exp()
+    }
+
+    fn mean_decay(self) -> Self {
+        if self > 0.0 { -(-self).exp_m1() / self } else { 1.0 }
+    }
+}
+
+/// A point, direction or colour.
+pub(crate) type Vec3<R> = [R; 3];
+
+/// All three components alike.
+pub(crate) fn splat<R: Real>(value: R) -> Vec3<R> {
+    [value; 3]
+}
+
+/// Each component as it is.
+pub(crate) fn vector<R: Real>(v: [f32; 3]) -> Vec3<R> {
+    v.map(R::from_f32)
+}
+
+/// a + b
+pub(crate) fn add<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// a - b
+pub(crate) fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// a * b, component by component.
+pub(crate) fn mul<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+/// v * k
+pub(crate) fn scale<R: Real>(v: Vec3<R>, k: R) -> Vec3<R> {
+    [v[0] * k, v[1] * k, v[2] * k]
+}
+
+/// Sum of products, left to right.
+pub(crate) fn dot<R: Real>(a: Vec3<R>, b: Vec3<R>) -> R {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+/// Euclidean length.
+pub(crate) fn length<R: Real>(v: Vec3<R>) -> R {
+    dot(v, v).sqrt()
+}
+
+/// The largest component.
+pub(crate) fn largest<R: Real>(v: Vec3<R>) -> R {
+    v[0].max(v[1]).max(v[2])
+}
+
+/// The smallest component.
+pub(crate) fn smallest<R: Real>(v: Vec3<R>) -> R {
+    v[0].min(v[1]).min(v[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_decay_matches_f64() {
+        let mut worst: f64 = 0.0;
+        for i in 0..200_000_u32 {
+            let x = f64::from(i).powi(3) * 1.5e-14 + 1e-9;
+            let got = (x as f32).mean_decay();
+            let want = f64::from(x as f32).mean_decay();
+            worst = worst.max((f64::from(got) - want).abs() / want);
+        }
+        // algorithms.md §7.3 measured 4.7e-7 for 1 - exp(-x).
+        assert!(worst < 6e-7, "{worst:e}");
+        assert_eq!(0.0_f32.mean_decay(), 1.0);
+    }
+
+    #[test]
+    fn decay_ends_at_zero() {
+        assert_eq!(200.0_f32.decay(), 0.0);
+        assert_eq!(0.0_f32.decay(), 1.0);
+    }
+}

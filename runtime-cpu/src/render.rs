@@ -1,0 +1,131 @@
+//! The integrator: what a picture means.
+//!
+//! One text for two precisions: f32 with the batch evaluator for pictures, f64 with the reference
+//! evaluator to check them. The WGSL twin is `compiler/src/wgsl/render.wgsl` with its folder.
+//!
+//! 1. `camera`: a ray through each pixel's centre.
+//! 2. `surface`: sphere tracing to the first surface, false position onto it, its normal.
+//! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`.
+//! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray.
+//! 5. `film`: `color = L + T * (surface or background)`, tiles, threads.
+//!
+//! `pilot` chooses the comb's step.
+//!
+//! In f32 each operation is rounded by itself, in an order that neither threads nor batches change;
+//! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
+
+mod camera;
+mod comb;
+mod fields;
+mod film;
+mod medium;
+mod pilot;
+mod scene;
+mod shade;
+mod shadow;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use pilot::{StepChoice, choose_step};
+
+use crate::interp::Tapes;
+use fields::{Batch, Reference};
+use film::{Radiance, Watch, expose};
+use scene::{Batches, Scene};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+use vol_compiler::frame::{Frame, Image, Job, Pixel};
+use vol_compiler::program::Program;
+
+/// What a render did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Camera rays.
+    pub rays: u64,
+    /// Rays towards lights.
+    pub shadow_rays: u64,
+    /// Distances and gradients of solids evaluated.
+    pub surface_evaluations: u64,
+    /// Regions of media evaluated, to find which nodes are inside.
+    pub region_evaluations: u64,
+    /// Nodes of camera rays inside media.
+    pub medium_samples: u64,
+    /// Nodes of shadow rays inside media.
+    pub shadow_samples: u64,
+    /// From the call to the picture.
+    pub milliseconds: f64,
+}
+
+impl Stats {
+    /// Adds the counts of a part.
+    fn add(&mut self, part: &Self) {
+        self.rays += part.rays;
+        self.shadow_rays += part.shadow_rays;
+        self.surface_evaluations += part.surface_evaluations;
+        self.region_evaluations += part.region_evaluations;
+        self.medium_samples += part.medium_samples;
+        self.shadow_samples += part.shadow_samples;
+    }
+}
+
+/// Renders a picture, with as many threads as are asked for, else with those of the surrounding
+/// pool. `progress` hears the number of pixels done, in any order of the tiles. `None` if
+/// `cancelled` was set before the last tile.
+pub fn render(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    threads: Option<usize>,
+    progress: &(dyn Fn(u64) + Sync),
+    cancelled: &AtomicBool,
+) -> Option<(Image, Stats)> {
+    let watch = Watch { progress, cancelled };
+    let render = || render_batches(program, frame, job, Batches::DEFAULT, &watch);
+    let pool = threads.map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build());
+    match pool {
+        Some(Ok(pool)) => pool.install(render),
+        // A machine that starts no more threads still has the surrounding pool.
+        Some(Err(_)) | None => render(),
+    }
+}
+
+/// [`render`] with batches of other sizes, for the test that they change nothing.
+fn render_batches(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    batches: Batches,
+    watch: &Watch<'_>,
+) -> Option<(Image, Stats)> {
+    let started = Instant::now();
+    let tapes = Tapes::new(program);
+    let scene = Scene::<f32>::new(frame, job);
+    let (pixels, mut stats) = expose(&scene, job.size, batches, &|| Batch::new(&tapes, frame), watch)?;
+    stats.milliseconds = started.elapsed().as_secs_f64() * 1e3;
+    let pixels = pixels.into_iter().map(pixel).collect();
+    Some((Image { width: job.size[0], height: job.size[1], pixels }, stats))
+}
+
+fn pixel(radiance: Radiance<f32>) -> Pixel {
+    Pixel {
+        color: radiance.color,
+        transmittance: radiance.transmittance,
+        depth: radiance.depth.unwrap_or(f32::INFINITY),
+    }
+}
+
+/// The same picture in f64 with the reference evaluator: rgb, transmittance rgb and depth of each
+/// pixel, rows from the top. Slow; for small pictures.
+#[must_use]
+pub fn render_reference(program: &Program, frame: &Frame, job: &Job) -> Vec<[f64; 7]> {
+    let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
+    let scene = Scene::<f64>::new(frame, job);
+    let picture = expose(&scene, job.size, Batches::DEFAULT, &|| Reference::new(program, frame), &watch);
+    let pixels = picture.map_or_else(Vec::new, |(pixels, _)| pixels);
+    let flat = |pixel: Radiance<f64>| {
+        let ([r, g, b], [tr, tg, tb]) = (pixel.color, pixel.transmittance);
+        [r, g, b, tr, tg, tb, pixel.depth.unwrap_or(f64::INFINITY)]
+    };
+    pixels.into_iter().map(flat).collect()
+}

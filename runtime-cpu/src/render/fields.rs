@@ -1,0 +1,128 @@
+//! Where the integrator gets the values of a program's functions from.
+
+use crate::interp::{Evaluator, Tapes};
+use crate::real::{Real, Vec3};
+use vol_compiler::frame::Frame;
+use vol_compiler::ir::FunctionId;
+use vol_compiler::program::Program;
+use vol_compiler::reference;
+
+/// Evaluates functions for many points at once. Each point's results depend on that point alone.
+pub(crate) trait Fields {
+    /// The numbers that go in and come out.
+    type Real: Real;
+
+    /// One slice per input and per output of the function, all of one length.
+    fn evaluate(&mut self, function: FunctionId, inputs: &[&[Self::Real]], outputs: &mut [&mut [Self::Real]]);
+
+    /// The first `N` outputs at many points.
+    fn sample<const N: usize>(
+        &mut self,
+        function: FunctionId,
+        points: &Points<Self::Real>,
+    ) -> [Vec<Self::Real>; N] {
+        self.apply(function, &[&points.x, &points.y, &points.z])
+    }
+
+    /// The outputs for many arguments.
+    fn apply<const N: usize>(
+        &mut self,
+        function: FunctionId,
+        inputs: &[&[Self::Real]],
+    ) -> [Vec<Self::Real>; N] {
+        let count = inputs[0].len();
+        let mut outputs: [Vec<Self::Real>; N] = std::array::from_fn(|_| vec![Self::Real::ZERO; count]);
+        if count > 0 {
+            self.evaluate(function, inputs, &mut outputs.each_mut().map(Vec::as_mut_slice));
+        }
+        outputs
+    }
+}
+
+/// Many points, one vector per coordinate.
+#[derive(Clone, Debug)]
+pub(crate) struct Points<R> {
+    x: Vec<R>,
+    y: Vec<R>,
+    z: Vec<R>,
+}
+
+impl<R: Real> Points<R> {
+    /// None yet.
+    pub(crate) fn new() -> Self {
+        Self { x: Vec::new(), y: Vec::new(), z: Vec::new() }
+    }
+
+    /// Adds one.
+    pub(crate) fn push(&mut self, point: Vec3<R>) {
+        self.x.push(point[0]);
+        self.y.push(point[1]);
+        self.z.push(point[2]);
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// One of them.
+    pub(crate) fn get(&self, index: usize) -> Vec3<R> {
+        [self.x[index], self.y[index], self.z[index]]
+    }
+}
+
+impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
+    fn from_iter<I: IntoIterator<Item = Vec3<R>>>(points: I) -> Self {
+        let mut all = Self::new();
+        points.into_iter().for_each(|point| all.push(point));
+        all
+    }
+}
+
+/// The batch evaluator, f32.
+pub(crate) struct Batch<'a> {
+    evaluator: Evaluator<'a>,
+}
+
+impl<'a> Batch<'a> {
+    /// An evaluator of its own for one thread.
+    pub(crate) fn new(tapes: &'a Tapes, frame: &'a Frame) -> Self {
+        Self { evaluator: Evaluator::new(tapes, frame) }
+    }
+}
+
+impl Fields for Batch<'_> {
+    type Real = f32;
+
+    fn evaluate(&mut self, function: FunctionId, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
+        self.evaluator.evaluate(function, inputs, outputs);
+    }
+}
+
+/// The reference evaluator: f64, one point after the other.
+pub(crate) struct Reference<'a> {
+    program: &'a Program,
+    frame: &'a Frame,
+}
+
+impl<'a> Reference<'a> {
+    /// The functions of a program in one frame.
+    pub(crate) fn new(program: &'a Program, frame: &'a Frame) -> Self {
+        Self { program, frame }
+    }
+}
+
+impl Fields for Reference<'_> {
+    type Real = f64;
+
+    fn evaluate(&mut self, function: FunctionId, inputs: &[&[f64]], outputs: &mut [&mut [f64]]) {
+        let function = self.program.module.function(function);
+        for point in 0..inputs[0].len() {
+            let arguments: Vec<f64> = inputs.iter().map(|input| input[point]).collect();
+            let values = reference::evaluate(function, &arguments, &self.frame.uniforms, &self.frame.curves);
+            for (output, value) in outputs.iter_mut().zip(values) {
+                output[point] = value;
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
+
+use super::fields::Fields;
+use crate::real::{Real, Vec3, length, vector};
+use vol_compiler::frame::{Frame, Job};
+use vol_compiler::ir::FunctionId;
+use vol_compiler::program::Lighting;
+use vol_compiler::wgsl::render::padded;
+
+/// What the integrator knows of a frame.
+#[derive(Debug)]
+pub(crate) struct Scene<R> {
+    /// Eye and picture plane.
+    pub(crate) camera: Camera<R>,
+    /// Width and height in pixels.
+    pub(crate) size: [R; 2],
+    /// Height of a pixel at distance 1 from the eye.
+    pub(crate) footprint: R,
+    /// Distance of the eye from the origin of the scene: sets what rounding does to positions.
+    pub(crate) remoteness: R,
+    /// Solids whose box is not empty.
+    pub(crate) solids: Vec<Solid<R>>,
+    /// Media whose box is not empty.
+    pub(crate) media: Vec<Medium<R>>,
+    /// Lights.
+    pub(crate) lights: Vec<Light<R>>,
+    /// Radiance where nothing is hit.
+    pub(crate) background: Vec3<R>,
+    /// Distance between nodes along camera rays.
+    pub(crate) step: R,
+    /// Distance between nodes along shadow rays.
+    pub(crate) shadow_step: R,
+}
+
+/// See [`vol_compiler::frame::CameraFrame`].
+#[derive(Debug)]
+pub(crate) struct Camera<R> {
+    pub(crate) origin: Vec3<R>,
+    pub(crate) forward: Vec3<R>,
+    pub(crate) right: Vec3<R>,
+    pub(crate) up: Vec3<R>,
+}
+
+/// See [`vol_compiler::frame::ObjectFrame`].
+#[derive(Debug)]
+pub(crate) struct Solid<R> {
+    pub(crate) distance: FunctionId,
+    pub(crate) gradient: FunctionId,
+    pub(crate) surface: FunctionId,
+    pub(crate) shows_normals: bool,
+    pub(crate) lo: Vec3<R>,
+    pub(crate) hi: Vec3<R>,
+    pub(crate) safe_scale: R,
+}
+
+/// See [`vol_compiler::frame::MediumFrame`].
+#[derive(Debug)]
+pub(crate) struct Medium<R> {
+    pub(crate) region: FunctionId,
+    pub(crate) interior: FunctionId,
+    pub(crate) extinction: FunctionId,
+    pub(crate) phase: FunctionId,
+    pub(crate) lighting: Lighting,
+    pub(crate) lo: Vec3<R>,
+    pub(crate) hi: Vec3<R>,
+}
+
+/// See [`vol_compiler::frame::LightFrame`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Light<R> {
+    pub(crate) distant: bool,
+    pub(crate) position: Vec3<R>,
+    pub(crate) color: Vec3<R>,
+    pub(crate) shadows: bool,
+}
+
+impl<R: Real> Scene<R> {
+    /// Reads a frame.
+    pub(crate) fn new(frame: &Frame, job: &Job) -> Self {
+        let camera = Camera {
+            origin: vector(frame.camera.origin),
+            forward: vector(frame.camera.forward),
+            right: vector(frame.camera.right),
+            up: vector(frame.camera.up),
+        };
+        let size = job.size.map(|pixels| R::from_index(pixels as i32));
+        let lights = frame.lights.iter().map(|light| Light {
+            distant: light.distant,
+            position: vector(light.position),
+            color: vector(light.color),
+            shadows: light.shadows,
+        });
+        Self {
+            footprint: (R::from_f32(2.0) * length(camera.up)) / size[1],
+            remoteness: length(camera.origin),
+            camera,
+            size,
+            solids: solids(frame),
+            media: media(frame),
+            lights: lights.collect(),
+            background: vector(frame.background),
+            step: R::from_f32(job.step),
+            shadow_step: R::from_f32(job.shadow_step),
+        }
+    }
+}
+
+fn solids<R: Real>(frame: &Frame) -> Vec<Solid<R>> {
+    let solid = |object: &vol_compiler::frame::ObjectFrame| {
+        let bounds = padded(&object.bounds)?;
+        Some(Solid {
+            distance: object.distance,
+            gradient: object.gradient,
+            surface: object.surface,
+            shows_normals: object.shows_normals,
+            lo: vector(bounds.lo),
+            hi: vector(bounds.hi),
+            safe_scale: R::from_f32(object.safe_scale),
+        })
+    };
+    frame.objects.iter().filter_map(solid).collect()
+}
+
+fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
+    let medium = |medium: &vol_compiler::frame::MediumFrame| {
+        let bounds = padded(&medium.bounds)?;
+        Some(Medium {
+            region: medium.region,
+            interior: medium.interior,
+            extinction: medium.extinction,
+            phase: medium.phase,
+            lighting: medium.lighting,
+            lo: vector(bounds.lo),
+            hi: vector(bounds.hi),
+        })
+    };
+    frame.media.iter().filter_map(medium).collect()
+}
+
+/// Sizes of the batches; no picture depends on them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Batches {
+    /// Rays that walk together.
+    pub(crate) rays: usize,
+    /// Nodes of each of those rays that are sampled together.
+    pub(crate) nodes: i32,
+}
+
+impl Batches {
+    /// About 4000 points at once: enough to pay for the interpreter, small enough for the cache.
+    pub(crate) const DEFAULT: Self = Self { rays: 256, nodes: 16 };
+}
+
+/// The integrator at work: a scene, the evaluator of its functions, and what has been counted.
+pub(crate) struct Integrator<'a, F: Fields> {
+    pub(crate) scene: &'a Scene<F::Real>,
+    pub(crate) fields: F,
+    /// Sign of each solid's distance as the camera sees it, see [`super::surface`].
+    pub(crate) sides: Vec<F::Real>,
+    pub(crate) batches: Batches,
+    pub(crate) stats: super::Stats,
+}

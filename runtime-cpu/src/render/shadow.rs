@@ -1,0 +1,118 @@
+//! How much of a light arrives at a point: solids between hide it, media between weaken it.
+//!
+//! Twin: `compiler/src/wgsl/render/shadow.wgsl`.
+
+use super::camera::{FAR, Ray};
+use super::fields::Fields;
+use super::scene::Integrator;
+use super::surface::{MAX_STEPS, Walker, start};
+use crate::real::{Real, Vec3, add, scale, smallest, splat};
+
+/// Optical depth above which nothing arrives; exp(-24) is 4e-11. It only grows along a ray, so
+/// stopping early and looking at the end come to the same.
+pub(super) const OPAQUE: f32 = 24.0;
+
+/// A ray towards a light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShadowRay<R> {
+    /// From the point to the light.
+    pub(crate) ray: Ray<R>,
+    /// Distance of the light.
+    pub(crate) length: R,
+    /// Shortest step of the walk, a fortieth of a pixel: nothing thinner is sure to be seen.
+    pub(crate) stride: R,
+}
+
+impl<R: Real> ShadowRay<R> {
+    /// `bias` as of [`super::surface::shadow_bias`].
+    pub(crate) fn new(ray: Ray<R>, length: R, bias: R) -> Self {
+        Self { ray, length, stride: R::from_f32(0.25) * bias }
+    }
+}
+
+impl<F: Fields> Integrator<'_, F> {
+    /// Fraction of the light that arrives, per channel.
+    pub(crate) fn visibility(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<Vec3<F::Real>> {
+        self.stats.shadow_rays += rays.len() as u64;
+        let mut all = Vec::with_capacity(rays.len());
+        for batch in rays.chunks(self.batches.rays) {
+            let mut seen = vec![splat(F::Real::ZERO); batch.len()];
+            // Only what no solid hides goes through the media.
+            let blocked = self.blocked(batch);
+            let free: Vec<usize> = (0..batch.len()).filter(|&ray| !blocked[ray]).collect();
+            let paths: Vec<_> = free.iter().map(|&ray| batch[ray].ray).collect();
+            let ends: Vec<_> = free.iter().map(|&ray| batch[ray].length).collect();
+            for (ray, depth) in free.into_iter().zip(self.optical_depth(&paths, &ends)) {
+                let dark = smallest(depth) > F::Real::from_f32(OPAQUE);
+                seen[ray] = if dark { splat(F::Real::ZERO) } else { depth.map(Real::decay) };
+            }
+            all.extend(seen);
+        }
+        all
+    }
+
+    /// Whether the ray enters a solid before it reaches the light.
+    fn blocked(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<bool> {
+        let mut blocked = vec![false; rays.len()];
+        if self.scene.solids.is_empty() {
+            return blocked;
+        }
+        let paths: Vec<_> = rays.iter().map(|ray| ray.ray).collect();
+        let outside = vec![F::Real::ONE; self.scene.solids.len()];
+        let spans = self.object_spans(&paths, &outside);
+        let mut walkers: Vec<_> = start(rays.len());
+        for _ in 0..MAX_STEPS {
+            let near = self.nearest(&paths, &spans, &walkers, &outside);
+            let mut left = Vec::with_capacity(walkers.len());
+            for (walker, near) in walkers.into_iter().zip(near) {
+                // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
+                if near.distance < F::Real::ZERO {
+                    blocked[walker.ray] = true;
+                    continue;
+                }
+                let ray = &rays[walker.ray];
+                let t = walker.t + near.distance.min(near.gap).max(ray.stride);
+                if t < ray.length.min(F::Real::from_f32(FAR)) {
+                    left.push(Walker { ray: walker.ray, t, from: walker.t });
+                }
+            }
+            walkers = left;
+            if walkers.is_empty() {
+                break;
+            }
+        }
+        blocked
+    }
+
+    /// Integral of the extinction along each ray.
+    fn optical_depth(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Vec3<F::Real>> {
+        let mut depths = vec![splat(F::Real::ZERO); rays.len()];
+        let combs = self.combs(rays, ends, self.scene.shadow_step);
+        let nodes = self.batches.nodes;
+        let mut active = combs.active();
+        while !active.is_empty() {
+            // Optical depth of each node, all media together.
+            let mut steps = vec![splat(F::Real::ZERO); active.len() * nodes as usize];
+            for index in 0..self.scene.media.len() {
+                let inside = self.inside(index, rays, &combs, &active);
+                let extinction = self.scene.media[index].extinction;
+                let [r, g, b] = self.fields.sample(extinction, &inside.points);
+                self.stats.shadow_samples += r.len() as u64;
+                for (i, (&slot, &weight)) in inside.slots.iter().zip(&inside.weights).enumerate() {
+                    steps[slot] = add(steps[slot], scale([r[i], g[i], b[i]], weight));
+                }
+            }
+            for (which, steps) in steps.chunks(nodes as usize).enumerate() {
+                let ray = active[which].ray;
+                depths[ray] = steps.iter().fold(depths[ray], |depth, &step| add(depth, step));
+            }
+            // Go on with the rays that are not dark yet.
+            active.retain_mut(|cursor| {
+                cursor.node += nodes;
+                let dark = smallest(depths[cursor.ray]) > F::Real::from_f32(OPAQUE);
+                !dark && cursor.node <= combs.whole[cursor.ray].last
+            });
+        }
+        depths
+    }
+}

@@ -1,0 +1,341 @@
+//! Where rays meet solids: sphere tracing.
+//!
+//! All rays of a batch walk together, one step each at a time, and every solid is evaluated for
+//! the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
+//! distance and its normal change sign for camera rays, so the ray ends at the far wall.
+//!
+//! A ray hits what it enters: it walks on, at least a fortieth of a pixel at a time, until a distance
+//! is negative, and the hit is then found between the last two places. To stop where the distance is
+//! below half a pixel would make every silhouette half a pixel larger.
+//!
+//! Twin: `compiler/src/wgsl/render/surface.wgsl`.
+
+use super::camera::{FAR, Ray, Span, contains, slab};
+use super::fields::{Fields, Points};
+use super::scene::{Batches, Integrator, Scene};
+use crate::real::{Real, Vec3, length, scale};
+
+/// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
+pub(crate) const MAX_STEPS: u32 = 2000;
+
+/// Distance between neighbours of 1 in f32.
+pub(super) const EPSILON: f32 = 1.192_092_9e-7;
+
+/// Rounds of [`Integrator::refine`]: over a fortieth of a pixel the first leaves next to nothing where
+/// the ray meets the surface, the others serve rays that only touch it.
+pub(super) const REFINEMENTS: u32 = 4;
+
+/// A gradient shorter than this has no direction.
+pub(super) const FLAT: f32 = 1e-15;
+
+/// A ray on its way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Walker<R> {
+    /// Index of the ray.
+    pub(crate) ray: usize,
+    /// Distance walked.
+    pub(crate) t: R,
+    /// Where it was one step earlier.
+    pub(crate) from: R,
+}
+
+/// What a walker has around it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<R> {
+    /// Distance to the nearest surface of the solids in whose boxes it is, safe to walk.
+    pub(crate) distance: R,
+    /// Index of the solid.
+    pub(crate) solid: usize,
+    /// Distance along the ray to the next box.
+    pub(crate) gap: R,
+}
+
+/// Where a ray meets a solid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contact<R> {
+    /// Index of the ray.
+    pub(crate) ray: usize,
+    /// Index of the solid.
+    pub(crate) solid: usize,
+    /// Distance from the origin of the ray.
+    pub(crate) t: R,
+    /// The point.
+    pub(crate) position: Vec3<R>,
+    /// Unit normal on the eye's side of the wall; towards the eye where the field is flat.
+    pub(crate) normal: Vec3<R>,
+    /// How far the point may be off the surface.
+    pub(crate) residual: R,
+}
+
+/// How near a ray may pass a surface unseen: half a pixel, or what rounding makes of positions.
+pub(crate) fn tolerance<R: Real>(scene: &Scene<R>, t: R) -> R {
+    let pixel = (R::from_f32(0.5) * scene.footprint) * t;
+    pixel.max(R::from_f32(4.0 * EPSILON) * (scene.remoteness + t))
+}
+
+/// Shortest step of a ray: nothing thinner than a fortieth of a pixel is sure to be seen.
+pub(crate) fn stride<R: Real>(scene: &Scene<R>, t: R) -> R {
+    let pixel = (R::from_f32(0.025) * scene.footprint) * t;
+    pixel.max(R::from_f32(4.0 * EPSILON) * (scene.remoteness + t))
+}
+
+/// How far shadow rays start off a surface: a tenth of a pixel plus what rounding may need.
+pub(crate) fn shadow_bias<R: Real>(scene: &Scene<R>, t: R) -> R {
+    let pixel = (R::from_f32(0.1) * scene.footprint) * t;
+    pixel + rounding(scene, t)
+}
+
+/// How far rounding may move a surface along a ray, with room to spare.
+fn rounding<R: Real>(scene: &Scene<R>, t: R) -> R {
+    R::from_f32(64.0 * EPSILON) * (scene.remoteness + t)
+}
+
+impl<'a, F: Fields> Integrator<'a, F> {
+    /// An integrator for camera rays of a scene.
+    pub(crate) fn new(scene: &'a Scene<F::Real>, fields: F, batches: Batches) -> Self {
+        let sides = vec![F::Real::ONE; scene.solids.len()];
+        let mut new = Self { scene, fields, sides, batches, stats: super::Stats::default() };
+        new.find_sides();
+        new
+    }
+
+    /// Finds the solids that hold the eye.
+    fn find_sides(&mut self) {
+        let scene = self.scene;
+        let eye = Points::from_iter([scene.camera.origin]);
+        for (index, solid) in scene.solids.iter().enumerate() {
+            if contains(solid.lo, solid.hi, scene.camera.origin) {
+                let [distance] = self.fields.sample(solid.distance, &eye);
+                let inside = distance[0] < F::Real::ZERO;
+                self.sides[index] = if inside { -F::Real::ONE } else { F::Real::ONE };
+            }
+        }
+    }
+
+    /// Parts of the rays in the box of each solid, a little longer than rounding can make them; all
+    /// of the ray for a solid that is seen from within, since it ends where the box may end.
+    pub(crate) fn object_spans(&self, rays: &[Ray<F::Real>], sides: &[F::Real]) -> Vec<Vec<Span<F::Real>>> {
+        let slack = F::Real::from_f32(16.0 * EPSILON);
+        let solids = self.scene.solids.iter().zip(sides);
+        let spans = solids.map(|(solid, &side)| {
+            let span = |ray| {
+                let exact = slab(ray, solid.lo, solid.hi);
+                let exit = exact.exit + slack * exact.exit;
+                let exit = if side < F::Real::ZERO { F::Real::from_f32(FAR) } else { exit };
+                Span { entry: exact.entry - slack * exact.entry, exit }
+            };
+            rays.iter().map(span).collect()
+        });
+        spans.collect()
+    }
+
+    /// Looks around from every walker.
+    pub(crate) fn nearest(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        spans: &[Vec<Span<F::Real>>],
+        walkers: &[Walker<F::Real>],
+        sides: &[F::Real],
+    ) -> Vec<Near<F::Real>> {
+        let far = F::Real::from_f32(FAR);
+        let mut all = vec![Near { distance: far, solid: 0, gap: far }; walkers.len()];
+        let scene = self.scene;
+        for (index, solid) in scene.solids.iter().enumerate() {
+            // Find the walkers in this solid's box, and how far the others are from it.
+            let mut here = Vec::new();
+            let mut points = Points::new();
+            for (which, walker) in walkers.iter().enumerate() {
+                let span = spans[index][walker.ray];
+                if span.is_some() && walker.t < span.entry {
+                    all[which].gap = all[which].gap.min(span.entry - walker.t);
+                } else if span.is_some() && walker.t <= span.exit {
+                    here.push(which);
+                    points.push(rays[walker.ray].at(walker.t));
+                }
+            }
+            // Keep the smallest distance; the earlier solid on a tie.
+            let [distances] = self.fields.sample(solid.distance, &points);
+            self.stats.surface_evaluations += here.len() as u64;
+            for (which, distance) in here.into_iter().zip(distances) {
+                let safe = solid.safe_scale * (sides[index] * distance);
+                if safe < all[which].distance {
+                    all[which].distance = safe;
+                    all[which].solid = index;
+                }
+            }
+        }
+        all
+    }
+
+    /// First surface on each ray, in the order of the rays.
+    pub(crate) fn trace(&mut self, rays: &[Ray<F::Real>]) -> Vec<Contact<F::Real>> {
+        if self.scene.solids.is_empty() {
+            return Vec::new();
+        }
+        let sides = self.sides.clone();
+        let spans = self.object_spans(rays, &sides);
+        let mut walkers: Vec<_> = start(rays.len());
+        let mut hits = Vec::new();
+        for step in 1..=MAX_STEPS {
+            let near = self.nearest(rays, &spans, &walkers, &sides);
+            let mut left = Vec::with_capacity(walkers.len());
+            for (walker, near) in walkers.into_iter().zip(near) {
+                // Stop inside a solid; on the last step also where it would have been near enough.
+                let patience =
+                    if step == MAX_STEPS { tolerance(self.scene, walker.t) } else { F::Real::ZERO };
+                if near.distance < patience {
+                    hits.push((walker, near.solid));
+                    continue;
+                }
+                // Walk as far as nothing can be, at least a fortieth of a pixel.
+                let t = walker.t + near.distance.min(near.gap).max(stride(self.scene, walker.t));
+                if t < F::Real::from_f32(FAR) {
+                    left.push(Walker { ray: walker.ray, t, from: walker.t });
+                }
+            }
+            walkers = left;
+            if walkers.is_empty() {
+                break;
+            }
+        }
+        self.touch(rays, &hits)
+    }
+
+    /// Moves hits onto their surfaces and finds the normals.
+    fn touch(&mut self, rays: &[Ray<F::Real>], hits: &[(Walker<F::Real>, usize)]) -> Vec<Contact<F::Real>> {
+        let mut contacts = Vec::with_capacity(hits.len());
+        for solid in 0..self.scene.solids.len() {
+            let here: Vec<_> = hits.iter().filter(|hit| hit.1 == solid).map(|hit| hit.0).collect();
+            if !here.is_empty() {
+                contacts.extend(self.refine(rays, solid, here));
+            }
+        }
+        contacts.sort_unstable_by_key(|contact| contact.ray);
+        contacts
+    }
+
+    /// False position between the last two places of each walker.
+    fn refine(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        solid: usize,
+        walkers: Vec<Walker<F::Real>>,
+    ) -> Vec<Contact<F::Real>> {
+        let start: Vec<_> = walkers.iter().map(|walker| Walker { t: walker.from, ..*walker }).collect();
+        let outer = self.values(rays, solid, &start);
+        let inner = self.values(rays, solid, &walkers);
+        let bracket = |index: usize| {
+            let walker: &Walker<F::Real> = &walkers[index];
+            Bracket { outside: [walker.from, outer[index]], inside: [walker.t, inner[index]] }
+        };
+        let mut brackets: Vec<_> = (0..walkers.len()).map(bracket).collect();
+        for _ in 0..REFINEMENTS {
+            let between: Vec<_> =
+                walkers.iter().zip(&brackets).map(|(walker, bracket)| bracket.probe(walker)).collect();
+            let values = self.values(rays, solid, &between);
+            let probes = between.iter().zip(values).zip(&mut brackets);
+            probes.for_each(|((walker, value), bracket)| bracket.narrow(walker.t, value));
+        }
+        // Take the normals a little inside: on the surface itself a distance may have no gradient.
+        let ends = walkers.iter().zip(&brackets).map(|(walker, bracket)| (walker.ray, bracket.best()));
+        let ends: Vec<_> = ends.collect();
+        let inside = |&(ray, [t, _]): &(usize, [F::Real; 2])| {
+            let t = t + rounding(self.scene, t);
+            Walker { ray, t, from: t }
+        };
+        let inside: Vec<_> = ends.iter().map(inside).collect();
+        let gradients = self.gradients(rays, solid, &inside);
+        let ends = ends.into_iter().zip(gradients);
+        ends.map(|((ray, best), gradient)| contact(self.scene, &rays[ray], (ray, solid), best, gradient))
+            .collect()
+    }
+
+    /// Distances of one solid as the camera sees them.
+    fn values(&mut self, rays: &[Ray<F::Real>], solid: usize, walkers: &[Walker<F::Real>]) -> Vec<F::Real> {
+        let points = walkers.iter().map(|walker| rays[walker.ray].at(walker.t)).collect();
+        let [values] = self.fields.sample(self.scene.solids[solid].distance, &points);
+        self.stats.surface_evaluations += values.len() as u64;
+        values.into_iter().map(|value| self.sides[solid] * value).collect()
+    }
+
+    /// Gradients of one solid's distance as the camera sees it.
+    fn gradients(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        solid: usize,
+        walkers: &[Walker<F::Real>],
+    ) -> Vec<Vec3<F::Real>> {
+        let points = walkers.iter().map(|walker| rays[walker.ray].at(walker.t)).collect();
+        let [x, y, z] = self.fields.sample(self.scene.solids[solid].gradient, &points);
+        self.stats.surface_evaluations += x.len() as u64;
+        (0..x.len()).map(|i| scale([x[i], y[i], z[i]], self.sides[solid])).collect()
+    }
+}
+
+/// Two places on a ray, the field 0 between them: `[t, value]` each.
+#[derive(Clone, Copy, Debug)]
+struct Bracket<R> {
+    /// Where the value is not negative.
+    outside: [R; 2],
+    /// Where it is.
+    inside: [R; 2],
+}
+
+impl<R: Real> Bracket<R> {
+    /// Whether the field changes sign at all: not where a ray stopped for want of patience.
+    fn is_proper(&self) -> bool {
+        (self.outside[1] >= R::ZERO) & (self.inside[1] < R::ZERO)
+    }
+
+    /// Where the field would be 0 if it were linear between the two.
+    fn probe(&self, walker: &Walker<R>) -> Walker<R> {
+        let ([t, value], [other_t, other_value]) = (self.outside, self.inside);
+        let fall = if self.is_proper() { value - other_value } else { R::ONE };
+        let t = if self.is_proper() { t + (other_t - t) * (value / fall) } else { other_t };
+        Walker { t, ..*walker }
+    }
+
+    /// Takes the value at the probe into account.
+    fn narrow(&mut self, t: R, value: R) {
+        if value < R::ZERO {
+            self.inside = [t, value];
+        } else {
+            self.outside = [t, value];
+        }
+    }
+
+    /// The place nearer to the surface, and how far the field is from 0 there.
+    fn best(&self) -> [R; 2] {
+        let outside = self.outside[1].abs() < self.inside[1].abs();
+        let [t, value] = if outside { self.outside } else { self.inside };
+        [t, value.abs()]
+    }
+}
+
+/// All rays at their origins.
+pub(crate) fn start<R: Real>(rays: usize) -> Vec<Walker<R>> {
+    (0..rays).map(|ray| Walker { ray, t: R::ZERO, from: R::ZERO }).collect()
+}
+
+/// The place of a hit, its normal and how exact it is.
+fn contact<R: Real>(
+    scene: &Scene<R>,
+    ray: &Ray<R>,
+    ids: (usize, usize),
+    [t, value]: [R; 2],
+    gradient: Vec3<R>,
+) -> Contact<R> {
+    let steepness = length(gradient);
+    let flat = steepness < R::from_f32(FLAT);
+    let divisor = if flat { R::ONE } else { steepness };
+    let normal = if flat { ray.direction.map(|d| -d) } else { gradient.map(|g| g / divisor) };
+    let most = R::from_f32(4.0) * tolerance(scene, t);
+    Contact {
+        ray: ids.0,
+        solid: ids.1,
+        t,
+        position: ray.at(t),
+        normal,
+        residual: (value / divisor).min(most),
+    }
+}

@@ -1,0 +1,6 @@
+//! Pictures with known answers, and what must not change a picture.
+
+mod media;
+mod same;
+mod solids;
+mod support;

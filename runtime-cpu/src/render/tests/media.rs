@@ -1,0 +1,180 @@
+//! Absorption, emission and single scattering against closed forms.
+
+use super::support::{Body, Gas, MATT, World, constant, glowing, mixed, norm, toward};
+use std::f64::consts::PI;
+use vol_compiler::frame::Aabb;
+use vol_compiler::program::Lighting;
+
+const SIZE: u32 = 8;
+const SLOPE: f64 = 0.15;
+const EXTINCTION: [f64; 3] = [0.35, 0.8, 2.1];
+
+/// A slab 2 thick about the origin, wide enough to be met by its faces alone, seen from z = 4.
+fn slab(scattering: f64, emission: f64, lighting: Lighting) -> World {
+    let mut world = World::new([0.0, 0.0, 4.0], SLOPE as f32);
+    let half = [3.0, 3.0, 1.0];
+    world.medium(Gas::uniform(half, [scattering; 3], EXTINCTION, [emission; 3], lighting));
+    world
+}
+
+/// Length of each pixel's ray in the slab.
+fn chord(index: usize) -> f64 {
+    2.0 * norm(toward(SIZE, SLOPE, index))
+}
+
+fn assert_close(got: [f32; 3], want: impl Fn(f64) -> f64, tolerance: f64) {
+    for (got, extinction) in got.into_iter().zip(EXTINCTION) {
+        let want = want(extinction);
+        assert!((f64::from(got) - want).abs() < tolerance, "{got} for {want}");
+    }
+}
+
+#[test]
+fn slab_absorbs_by_beer_lambert() {
+    let mut world = slab(0.0, 0.0, Lighting::None);
+    world.frame.background = [1.0, 1.0, 1.0];
+    for step in [0.031, 0.1, 0.137, 0.5, 0.77] {
+        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+            let through = |extinction: f64| (-extinction * chord(index)).exp();
+            assert_close(pixel.transmittance, through, 1e-5);
+            assert_close(pixel.color, through, 1e-5);
+            assert_eq!(pixel.depth, f32::INFINITY);
+        }
+    }
+}
+
+#[test]
+fn slab_emits() {
+    let world = slab(0.0, 0.4, Lighting::None);
+    for step in [0.031, 0.137, 0.5] {
+        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+            assert_close(
+                pixel.color,
+                |extinction| 0.4 * -(-extinction * chord(index)).exp_m1() / extinction,
+                1e-5,
+            );
+        }
+    }
+}
+
+#[test]
+fn clear_gas_emits() {
+    let mut world = World::new([0.0, 0.0, 4.0], SLOPE as f32);
+    world.medium(Gas::uniform([3.0, 3.0, 1.0], [0.0; 3], [0.0; 3], [0.5; 3], Lighting::None));
+    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+        assert!((f64::from(pixel.color[0]) - 0.5 * chord(index)).abs() < 1e-5);
+        assert_eq!(pixel.transmittance, [1.0; 3]);
+    }
+}
+
+#[test]
+fn slab_scatters_unshadowed() {
+    let mut world = slab(0.3, 0.0, Lighting::Unshadowed);
+    world.sun([0.6, 0.0, 0.8], [5.0, 5.0, 5.0]);
+    let source = 0.3 * 5.0 / (4.0 * PI);
+    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+        assert_close(
+            pixel.color,
+            |extinction| source * -(-extinction * chord(index)).exp_m1() / extinction,
+            1e-5,
+        );
+    }
+}
+
+/// The light is behind the eye, so a point at depth x sees it through x of gas.
+#[test]
+fn slab_shadows_itself_to_second_order() {
+    let worst = |step: f32| {
+        let mut world = slab(0.3, 0.0, Lighting::Shadowed);
+        world.sun([0.0, 0.0, 1.0], [5.0, 5.0, 5.0]);
+        let mut worst: f64 = 0.0;
+        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+            let slant = norm(toward(SIZE, SLOPE, index));
+            for (got, extinction) in pixel.color.into_iter().zip(EXTINCTION) {
+                let rate = extinction * (1.0 + slant);
+                let want = 0.3 * 5.0 / (4.0 * PI) * slant * -(-rate * 2.0).exp_m1() / rate;
+                worst = worst.max((f64::from(got) - want).abs() / want);
+            }
+        }
+        worst
+    };
+    let (coarse, fine) = (worst(0.1), worst(0.025));
+    assert!(coarse < 4e-2, "{coarse:e}");
+    assert!(fine < 0.1 * coarse, "{coarse:e} {fine:e}");
+}
+
+/// In an oven of radiance 1 every gas that glows at that temperature is invisible.
+#[test]
+fn furnace_is_white() {
+    let mut world = World::new([0.0, 0.0, 4.0], 0.4);
+    world.frame.background = [1.0; 3];
+    world.medium(Gas::uniform([1.0, 0.7, 0.9], [0.0; 3], [0.5, 3.0, 9.0], [0.5, 3.0, 9.0], Lighting::None));
+    world.medium(Gas::uniform([0.3, 1.7, 1.9], [0.0; 3], [2.0, 0.1, 0.7], [2.0, 0.1, 0.7], Lighting::None));
+    for pixel in world.render(24, 0.173).pixels {
+        for channel in pixel.color {
+            assert!((channel - 1.0).abs() < 1e-5, "{channel}");
+        }
+    }
+}
+
+#[test]
+fn surface_stands_in_gas() {
+    let mut world = slab(0.0, 0.0, Lighting::None);
+    world.ball([0.0, 0.0, -5.0], 5.0, glowing([1.0; 3]));
+    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+        // The ball's top is at z = 0: solve |4 z + t d - c| = 5 for the point that is seen.
+        let direction = toward(SIZE, SLOPE, index);
+        let (a, b, c) = (norm(direction).powi(2), -9.0, 81.0 - 25.0);
+        let t = (-b - (b * b - a * c).sqrt()) / a;
+        let path = (t - 3.0) * norm(direction);
+        assert_close(pixel.color, |extinction| (-extinction * path).exp(), 1e-5);
+        assert_eq!(pixel.transmittance, [0.0; 3]);
+        assert!((f64::from(pixel.depth) - t).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn eye_inside_gas() {
+    let mut world = slab(0.0, 0.0, Lighting::None);
+    world.frame.camera.origin = [0.0, 0.0, 0.63];
+    for step in [0.05, 0.137, 0.5] {
+        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+            let path = 1.63 * norm(toward(SIZE, SLOPE, index));
+            assert_close(pixel.transmittance, |extinction| (-extinction * path).exp(), 1e-5);
+        }
+    }
+}
+
+#[test]
+fn boxes_only_skip() {
+    let mut world = mixed();
+    let tight = world.render(20, 0.11);
+    for medium in &mut world.frame.media {
+        medium.bounds = Aabb { lo: medium.bounds.lo.map(|x| x - 3.0), hi: medium.bounds.hi.map(|x| x + 2.0) };
+    }
+    assert_eq!(world.render(20, 0.11), tight);
+}
+
+#[test]
+fn gas_without_bounds_ends() {
+    let mut world = slab(0.0, 0.0, Lighting::None);
+    world.frame.media[0].bounds = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
+    let image = world.render(4, 0.1);
+    world.frame.media[0].bounds = Aabb { lo: [-3.0, -3.0, -1.0], hi: [3.0, 3.0, 1.0] };
+    assert_eq!(image, world.render(4, 0.1));
+}
+
+/// Gas between a matt wall and the light weakens it as it weakens the wall for the eye.
+#[test]
+fn gas_casts_shadows_on_surfaces() {
+    let mut world = slab(0.0, 0.0, Lighting::None);
+    let mut distance = Body::new("wall", 3);
+    let from = distance.relative_to([0.0, 0.0, -2.0]);
+    let wall = [distance.finish(&from[2..]), constant("out", 3, &[0.0, 0.0, 1.0])];
+    let bounds = Aabb { lo: [-9.0, -9.0, -3.0], hi: [9.0, 9.0, -2.0] };
+    world.solid(wall, MATT, bounds, 1.0);
+    world.sun([0.0, 0.0, 1.0], [1.0; 3]);
+    for (index, pixel) in world.render(SIZE, 0.1).pixels.iter().enumerate() {
+        assert_close(pixel.color, |extinction| (-extinction * (2.0 + chord(index))).exp(), 1e-5);
+    }
+}

@@ -1,0 +1,244 @@
+//! What computes: the CPU, or a graphics device behind the feature `gpu`.
+//!
+//! [`Device::open`] turns what was asked for (`cpu`, `gpu`, `auto`) into a device that works or a
+//! reason why there is none; [`Device::prepare`] compiles a program for it. The commands then do
+//! not care which one they have. CPU work runs on the surrounding rayon pool.
+
+use std::marker::PhantomData;
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+use vol_compiler::frame::{Frame, Image, Job};
+use vol_compiler::ir::FunctionId;
+use vol_compiler::program::Program;
+use vol_runtime_cpu::interp::{Evaluator, Tapes};
+
+use crate::failure::Failure;
+
+/// What was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// The CPU.
+    Cpu,
+    /// Any graphics device, also one in software.
+    Gpu,
+    /// A hardware graphics device if there is one, else the CPU.
+    Auto,
+}
+
+/// What computes.
+#[derive(Debug)]
+pub enum Device {
+    /// The CPU.
+    Cpu,
+    /// A graphics device.
+    #[cfg(feature = "gpu")]
+    Gpu(Box<vol_runtime_gpu::Gpu>),
+}
+
+/// A program ready to be rendered on a device.
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    program: &'a Program,
+    target: Target<'a>,
+}
+
+#[derive(Debug)]
+enum Target<'a> {
+    Cpu(PhantomData<&'a Device>),
+    #[cfg(feature = "gpu")]
+    Gpu(&'a vol_runtime_gpu::Gpu, vol_runtime_gpu::Renderer),
+}
+
+/// A finished picture and the work it took.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The picture.
+    pub image: Image,
+    /// What was done for it; graphics devices do not count.
+    pub work: Option<Work>,
+}
+
+/// How much was computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Camera and shadow rays.
+    pub rays: u64,
+    /// Points inside media at which their properties were computed, for both kinds of rays.
+    pub samples: u64,
+    /// Points at which functions of the scene were computed: the samples, and the search for
+    /// surfaces and for the walls of media.
+    pub evaluations: u64,
+}
+
+impl Work {
+    /// The work of two pictures.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            samples: self.samples + other.samples,
+            evaluations: self.evaluations + other.evaluations,
+        }
+    }
+
+    fn of_cpu(stats: &vol_runtime_cpu::Stats) -> Self {
+        let samples = stats.medium_samples + stats.shadow_samples;
+        Self {
+            rays: stats.rays + stats.shadow_rays,
+            samples,
+            evaluations: samples + stats.surface_evaluations + stats.region_evaluations,
+        }
+    }
+}
+
+impl Device {
+    /// Opens what was asked for.
+    ///
+    /// # Errors
+    /// A device failure if the GPU was asked for by name and there is none.
+    pub fn open(choice: Choice) -> Result<Self, Failure> {
+        match choice {
+            Choice::Cpu => Ok(Self::Cpu),
+            Choice::Gpu => Self::open_gpu(),
+            // Software Vulkan is slower than the CPU path.
+            Choice::Auto => match Self::open_gpu() {
+                Ok(device) if device.is_hardware() => Ok(device),
+                Ok(_) | Err(_) => Ok(Self::Cpu),
+            },
+        }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn open_gpu() -> Result<Self, Failure> {
+        vol_runtime_gpu::open().map(|gpu| Self::Gpu(Box::new(gpu))).map_err(|error| gpu_failure(&error))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn open_gpu() -> Result<Self, Failure> {
+        let failure = Failure::device("this `vol` was built without the GPU backend");
+        Err(failure.with_help("use the CPU, or build with `--features gpu`"))
+    }
+
+    fn is_hardware(&self) -> bool {
+        match self {
+            Self::Cpu => false,
+            #[cfg(feature = "gpu")]
+            Self::Gpu(gpu) => !gpu.is_software(),
+        }
+    }
+
+    /// `cpu` or `gpu`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            #[cfg(feature = "gpu")]
+            Self::Gpu(_) => "gpu",
+        }
+    }
+
+    /// One line for people, for example `CPU, 16 threads`.
+    #[must_use]
+    pub fn description(&self) -> String {
+        match self {
+            Self::Cpu => match rayon::current_num_threads() {
+                1 => "CPU, 1 thread".to_owned(),
+                threads => format!("CPU, {threads} threads"),
+            },
+            #[cfg(feature = "gpu")]
+            Self::Gpu(gpu) => format!("GPU, {}", gpu.description()),
+        }
+    }
+
+    /// Compiles a program for this device; of use for all its frames.
+    ///
+    /// # Errors
+    /// A device failure.
+    pub fn prepare<'a>(&'a self, program: &'a Program) -> Result<Renderer<'a>, Failure> {
+        let target = match self {
+            Self::Cpu => Target::Cpu(PhantomData),
+            #[cfg(feature = "gpu")]
+            Self::Gpu(gpu) => {
+                let renderer = vol_runtime_gpu::Renderer::new(gpu, program);
+                Target::Gpu(gpu, renderer.map_err(|error| gpu_failure(&error))?)
+            }
+        };
+        Ok(Renderer { program, target })
+    }
+
+    /// Values of a function of a position at points, as many in a row as it has outputs.
+    ///
+    /// # Errors
+    /// A device failure.
+    pub fn evaluate(
+        &self,
+        program: &Program,
+        frame: &Frame,
+        function: FunctionId,
+        points: &[[f32; 3]],
+    ) -> Result<Vec<f32>, Failure> {
+        match self {
+            Self::Cpu => Ok(evaluate_on_cpu(program, frame, function, points)),
+            #[cfg(feature = "gpu")]
+            Self::Gpu(gpu) => {
+                let inputs = points.as_flattened();
+                vol_runtime_gpu::evaluate(gpu, program, frame, function, inputs)
+                    .map_err(|error| gpu_failure(&error))
+            }
+        }
+    }
+}
+
+impl Renderer<'_> {
+    /// Renders one frame; `progress` hears the number of pixels done so far.
+    ///
+    /// # Errors
+    /// [`Failure::Interrupted`] once `cancelled` is set, or a device failure.
+    pub fn render(
+        &self,
+        frame: &Frame,
+        job: &Job,
+        progress: &(dyn Fn(u64) + Sync),
+        cancelled: &AtomicBool,
+    ) -> Result<Rendered, Failure> {
+        match &self.target {
+            Target::Cpu(_) => {
+                let rendered = vol_runtime_cpu::render(self.program, frame, job, None, progress, cancelled);
+                let (image, stats) = rendered.ok_or(Failure::Interrupted)?;
+                Ok(Rendered { image, work: Some(Work::of_cpu(&stats)) })
+            }
+            #[cfg(feature = "gpu")]
+            Target::Gpu(gpu, renderer) => {
+                let image = renderer.render(gpu, self.program, frame, job, progress, cancelled);
+                let image = image.map_err(|error| gpu_failure(&error))?;
+                Ok(Rendered { image: image.ok_or(Failure::Interrupted)?, work: None })
+            }
+        }
+    }
+}
+
+#[cfg(feature = "gpu")]
+fn gpu_failure(error: &vol_runtime_gpu::GpuError) -> Failure {
+    Failure::device(error.to_string())
+}
+
+/// Points that one thread evaluates at a time.
+const BATCH: usize = 4096;
+
+fn evaluate_on_cpu(program: &Program, frame: &Frame, function: FunctionId, points: &[[f32; 3]]) -> Vec<f32> {
+    let outputs = program.module.function(function).outputs.len();
+    let tapes = Tapes::new(program);
+    let batch = |points: &[[f32; 3]]| {
+        // One row per coordinate in, one row per output out.
+        let inputs: [Vec<f32>; 3] =
+            std::array::from_fn(|axis| points.iter().map(|point| point[axis]).collect());
+        let mut results = vec![vec![0.0; points.len()]; outputs];
+        let mut rows: Vec<&mut [f32]> = results.iter_mut().map(Vec::as_mut_slice).collect();
+        let mut evaluator = Evaluator::new(&tapes, frame);
+        evaluator.evaluate(function, &inputs.each_ref().map(Vec::as_slice), &mut rows);
+        let at = |point: usize| results.iter().map(move |row| row[point]);
+        (0..points.len()).flat_map(at).collect::<Vec<f32>>()
+    };
+    points.par_chunks(BATCH).flat_map_iter(batch).collect()
+}

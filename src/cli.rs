@@ -1,0 +1,167 @@
+//! The command line as typed: clap structs and nothing else.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::commands::values::{self, FrameRange, Size};
+
+/// Compiler and renderer for `.vol` scene scripts.
+///
+/// Exit codes: 0 fine; 1 the scene is at fault or a comparison failed; 2 wrong usage, or a file
+/// could not be read or written; 3 no graphics device, or it was lost; 130 interrupted.
+#[derive(Debug, Parser)]
+#[command(name = "vol", version, propagate_version = true)]
+pub(crate) struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene to a picture, or to one picture per frame
+    Render(Render),
+    /// Report the mistakes in scenes without rendering them
+    Check(Check),
+    /// Translate a scene to a shader
+    Compile(Compile),
+    /// Evaluate a field of a scene at given points
+    Query(Query),
+    /// Compare the CPU, the GPU and the f64 reference on a scene
+    Diff(Diff),
+}
+
+/// Which scene at which moment.
+#[derive(Debug, Args)]
+pub(crate) struct Scene {
+    /// The scene script
+    pub(crate) scene: PathBuf,
+    /// Set a param, written as in the language: `-D spin=70deg`, `-D tint=#ffcc00`
+    #[arg(short = 'D', value_name = "NAME=VALUE", value_parser = values::definition)]
+    pub(crate) define: Vec<(String, String)>,
+    /// Moment of the animation: `2s`, `500ms`, `1.5` (seconds) [default: 0s]
+    #[arg(long, value_parser = values::time, allow_negative_numbers = true)]
+    pub(crate) time: Option<f64>,
+}
+
+/// Arguments of `vol render`.
+#[derive(Debug, Args)]
+pub(crate) struct Render {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// The picture: `.png` (sRGB, 8 bit, opaque) or `.exr` (scene-linear float with alpha, depth
+    /// and transmittance); with --frames a name in which `####` stands for the frame's number
+    #[arg(short, long)]
+    pub(crate) output: PathBuf,
+    /// What computes the picture; `auto` takes a hardware GPU if there is one, else the CPU
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub(crate) backend: Backend,
+    /// Picture size in pixels instead of the scene's
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<Size>,
+    /// Render frames A to B, both included; frame f is at time f / fps
+    #[arg(long, value_name = "A..B", value_parser = values::frames, conflicts_with = "time")]
+    pub(crate) frames: Option<FrameRange>,
+    /// CPU threads [default: as many as the machine has cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Seed of the sample pattern; nothing is random at present, so the picture does not depend on
+    /// it, but it is recorded in --stats
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Error allowed from sampling media, root mean square over the picture relative to its
+    /// brightness; the distance between samples is chosen to meet it
+    #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = values::max_error)]
+    pub(crate) max_error: f32,
+    /// Write what was done and how long it took to this JSON file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) stats: Option<PathBuf>,
+}
+
+/// Arguments of `vol check`.
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// The scene scripts
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// `human` writes to stderr, `json` to stdout
+    #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
+    pub(crate) message_format: MessageFormat,
+}
+
+/// Arguments of `vol compile`.
+#[derive(Debug, Args)]
+pub(crate) struct Compile {
+    /// The scene script
+    pub(crate) scene: PathBuf,
+    /// The shader language
+    #[arg(long, value_enum)]
+    pub(crate) target: Target,
+    /// Where to write it [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Arguments of `vol query`.
+#[derive(Debug, Args)]
+pub(crate) struct Query {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// `distance:NAME`, `density:NAME`, `colour:NAME`, `local:NAME`, or a top-level function of a
+    /// position
+    pub(crate) field: String,
+    /// File with one point per line, `x,y,z`; blank lines and `#` comments are skipped; `-` is
+    /// standard input
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    pub(crate) at: PathBuf,
+    /// What evaluates the field; the reference computes in f64 and rounds to nine digits
+    #[arg(long, value_enum, default_value_t = QueryBackend::Reference)]
+    pub(crate) backend: QueryBackend,
+}
+
+/// Arguments of `vol diff`.
+#[derive(Debug, Args)]
+pub(crate) struct Diff {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// Points at which each field is compared
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) points: u32,
+    /// Size of the compared pictures [default: the scene's, at most 256 pixels wide and high]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<Size>,
+}
+
+/// What computes a picture.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Backend {
+    Cpu,
+    Gpu,
+    Auto,
+}
+
+/// What evaluates a field.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum QueryBackend {
+    Reference,
+    Cpu,
+    Gpu,
+}
+
+/// How diagnostics are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MessageFormat {
+    Human,
+    Json,
+}
+
+/// The shader languages.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Target {
+    Wgsl,
+}

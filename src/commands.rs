@@ -1,0 +1,122 @@
+//! The commands: what was typed becomes work, its outcome becomes text.
+//!
+//! Data goes to standard output, everything about the work (diagnostics, progress, summary) to
+//! standard error.
+
+mod check;
+mod compile;
+mod diff;
+mod progress;
+mod query;
+mod render;
+mod stats;
+pub(crate) mod values;
+
+use std::io::{self, IsTerminal as _, Write as _};
+use std::process;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use vol::failure::{Failure, Message};
+use vol::output::atomic;
+use vol::session::{Moment, Session};
+use vol_compiler::frame::Frame;
+use vol_language::diag::{self, Diagnostic};
+use vol_language::source::SourceFile;
+
+use crate::cli::{self, Command};
+
+/// Set by the first Ctrl-C; renders look at it.
+static CANCELLED: AtomicBool = AtomicBool::new(false);
+
+/// Runs a command.
+///
+/// # Errors
+/// Whatever ends it early.
+pub(crate) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Compile(arguments) => compile::run(arguments),
+        Command::Query(arguments) => query::run(arguments),
+        Command::Diff(arguments) => diff::run(arguments),
+    }
+}
+
+/// Writes to standard error why a command failed.
+pub(crate) fn print_failure(failure: &Failure) {
+    match failure {
+        Failure::Scene { file, diagnostics } => print_diagnostics(file, diagnostics),
+        Failure::Usage(message) | Failure::Content(message) | Failure::Device(message) => {
+            print_message("error", message);
+        }
+        Failure::Interrupted => print_line("interrupted"),
+        Failure::BrokenPipe | Failure::Reported(_) => {}
+    }
+}
+
+/// Writes diagnostics to standard error, in colour on a terminal.
+fn print_diagnostics(file: &SourceFile, diagnostics: &[Diagnostic]) {
+    if !diagnostics.is_empty() {
+        let text = diag::render::human(file, diagnostics, has_colour());
+        print_line(text.trim_end_matches('\n'));
+    }
+}
+
+fn print_message(kind: &str, message: &Message) {
+    print_line(&format!("{kind}: {}", message.text));
+    if let Some(help) = &message.help {
+        print_line(&format!("help: {help}"));
+    }
+}
+
+/// Writes a line to standard error. Where nobody can read it there is nobody to tell.
+fn print_line(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
+}
+
+fn has_colour() -> bool {
+    io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// A scene at the moment and with the params that the arguments ask for.
+struct Prepared {
+    session: Session,
+    params: Vec<Vec<f64>>,
+    moment: Moment,
+}
+
+impl Prepared {
+    fn new(arguments: &cli::Scene) -> Result<Self, Failure> {
+        let session = load(&arguments.scene)?;
+        let params = session.params(&arguments.define)?;
+        let moment = session.moment_at(&params, arguments.time.unwrap_or(0.0))?;
+        Ok(Self { session, params, moment })
+    }
+
+    fn frame(&self, size: [u32; 2]) -> Result<Frame, Failure> {
+        self.session.frame(&self.params, self.moment, size)
+    }
+}
+
+/// Loads a scene and shows its warnings.
+fn load(path: &std::path::Path) -> Result<Session, Failure> {
+    let session = vol::session::load(path)?;
+    print_diagnostics(&session.file, &session.warnings);
+    Ok(session)
+}
+
+/// Makes the first Ctrl-C set [`CANCELLED`] and the second end the process at once.
+fn catch_interrupts() -> Result<(), Failure> {
+    let handler = || {
+        if CANCELLED.swap(true, Ordering::Relaxed) {
+            atomic::abandon();
+            process::exit(i32::from(Failure::Interrupted.code()));
+        }
+    };
+    ctrlc::set_handler(handler).map_err(|error| Failure::usage(format!("cannot catch interrupts: {error}")))
+}
+
+/// [`Failure::Interrupted`] once Ctrl-C was pressed.
+fn stop_if_cancelled() -> Result<(), Failure> {
+    if CANCELLED.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
+}

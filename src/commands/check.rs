@@ -1,0 +1,101 @@
+//! `vol check`: the mistakes in scenes, without rendering them.
+
+use std::io::{self, Write as _};
+use std::path::Path;
+
+use vol::failure::Failure;
+use vol::session::{self, Session};
+use vol_compiler::program::Program;
+use vol_language::diag::{self, Diagnostic};
+use vol_language::source::SourceFile;
+
+use crate::cli::{self, MessageFormat};
+
+/// Checks all files, each reported as it is done; the worst decides the exit code.
+pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
+    let mut worst = 0;
+    for path in &arguments.scenes {
+        match check(path, arguments.message_format) {
+            Ok(()) => {}
+            Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
+            Err(failure) => {
+                super::print_failure(&failure);
+                worst = worst.max(failure.code());
+            }
+        }
+    }
+    if worst == 0 { Ok(()) } else { Err(Failure::Reported(worst)) }
+}
+
+fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {
+    match session::load(path).and_then(with_first_frame) {
+        Ok(session) => {
+            report(&session.file, &session.warnings, format)?;
+            if format == MessageFormat::Human {
+                super::print_line(&format!("{}: {}", path.display(), summary(&session.program)));
+                for note in &session.program.report {
+                    super::print_line(&format!("note: {note}"));
+                }
+            }
+            Ok(())
+        }
+        Err(Failure::Scene { file, diagnostics }) => {
+            report(&file, &diagnostics, format)?;
+            if format == MessageFormat::Human {
+                super::print_line(&format!("{}: {}", path.display(), tally(&diagnostics)));
+            }
+            Err(Failure::Reported(1))
+        }
+        Err(other) => Err(other),
+    }
+}
+
+/// Fails as well where the scene compiles but makes no sense at its first frame.
+fn with_first_frame(mut session: Session) -> Result<Session, Failure> {
+    let params = session.params(&[])?;
+    let moment = session.moment_at(&params, 0.0)?;
+    match session.frame(&params, moment, session.program.render.size) {
+        Ok(_) => Ok(session),
+        Err(Failure::Scene { file, diagnostics }) => {
+            session.warnings.extend(diagnostics);
+            Err(Failure::Scene { file, diagnostics: session.warnings })
+        }
+        Err(other) => Err(other),
+    }
+}
+
+fn report(file: &SourceFile, diagnostics: &[Diagnostic], format: MessageFormat) -> Result<(), Failure> {
+    match format {
+        MessageFormat::Human => {
+            super::print_diagnostics(file, diagnostics);
+            Ok(())
+        }
+        MessageFormat::Json => {
+            let text = diag::render::json(file, diagnostics);
+            let written = io::stdout().write_all(text.as_bytes());
+            written.map_err(|error| Failure::stdout(&error))
+        }
+    }
+}
+
+/// `fine: 1 object, 2 media, 1 light, 3 params`
+fn summary(program: &Program) -> String {
+    let counts = [
+        counted(program.objects.len(), "object", "objects"),
+        counted(program.media.len(), "medium", "media"),
+        counted(program.lights.len(), "light", "lights"),
+        counted(program.params.len(), "param", "params"),
+    ];
+    format!("fine: {}", counts.join(", "))
+}
+
+/// `2 errors, 1 warning`
+fn tally(diagnostics: &[Diagnostic]) -> String {
+    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).count();
+    let warnings = diagnostics.len() - errors;
+    format!("{}, {}", counted(errors, "error", "errors"), counted(warnings, "warning", "warnings"))
+}
+
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}

@@ -1,0 +1,173 @@
+//! `vol diff`: the CPU, the GPU and the f64 reference on one scene.
+
+use std::io::{self, Write as _};
+
+use vol::backend::{Choice, Device};
+use vol::compare::{self, FieldReport, GPU_IMAGE, ImageReport};
+use vol::failure::Failure;
+use vol_compiler::frame::{Frame, Job};
+use vol_compiler::program::{Field, Program};
+
+use super::values::Size;
+use super::{CANCELLED, Prepared};
+use crate::cli;
+
+/// Longest side of the compared pictures where none is asked for, in pixels.
+const LONGEST_SIDE: u32 = 256;
+
+/// Error allowed in the compared pictures; both backends use the steps chosen for it.
+const MAX_ERROR: f32 = 1e-2;
+
+pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
+    super::catch_interrupts()?;
+    let prepared = Prepared::new(&arguments.scene)?;
+    let cpu = Device::open(Choice::Cpu)?;
+    let gpu = Device::open(Choice::Gpu)?;
+    let program = &prepared.session.program;
+    let size = arguments.size.map_or_else(|| at_most(program.render.size, LONGEST_SIDE), |Size(size)| size);
+    let frame = prepared.frame(size)?;
+    let points = compare::scatter(&frame.bounds, arguments.points);
+    super::print_line(&format!("{} against {}", cpu.description(), gpu.description()));
+
+    let mut rows = vec![FIELD_HEADINGS.map(str::to_owned).to_vec()];
+    let mut failed = 0;
+    for field in &program.fields {
+        super::stop_if_cancelled()?;
+        let report = compare_field(program, &frame, field, &points, [&cpu, &gpu])?;
+        failed += usize::from(!report.passes());
+        rows.push(report.row(&field.name));
+    }
+    if rows.len() > 1 {
+        print_table(&rows)?;
+    }
+    let picture = compare_pictures(program, &frame, size, [&cpu, &gpu])?;
+    failed += usize::from(!picture.passes());
+    print_table(&[PICTURE_HEADINGS.map(str::to_owned).to_vec(), picture_row(&picture, size)])?;
+    match failed {
+        0 => Ok(()),
+        _ => Err(Failure::content(format!("{failed} of {} comparisons failed", program.fields.len() + 1))),
+    }
+}
+
+/// A field on both backends.
+struct FieldRow {
+    cpu: FieldReport,
+    gpu: FieldReport,
+    apart: f64,
+}
+
+const FIELD_HEADINGS: [&str; 8] = [
+    "field",
+    "points",
+    "undecided",
+    "widest bound",
+    "|cpu-ref|/bound",
+    "|gpu-ref|/bound",
+    "max |cpu-gpu|",
+    "",
+];
+
+impl FieldRow {
+    fn passes(&self) -> bool {
+        self.cpu.passes() && self.gpu.passes()
+    }
+
+    fn row(&self, name: &str) -> Vec<String> {
+        vec![
+            name.to_owned(),
+            self.cpu.points.to_string(),
+            self.cpu.undecided.to_string(),
+            format!("{:.1e}", self.cpu.widest),
+            format!("{:.3}", self.cpu.worst),
+            format!("{:.3}", self.gpu.worst),
+            format!("{:.1e}", self.apart),
+            verdict(self.passes()),
+        ]
+    }
+}
+
+fn compare_field(
+    program: &Program,
+    frame: &Frame,
+    field: &Field,
+    points: &[[f32; 3]],
+    [cpu, gpu]: [&Device; 2],
+) -> Result<FieldRow, Failure> {
+    let function = program.module.function(field.function);
+    let outputs = function.outputs.len();
+    let expected = compare::expected(function, frame, points);
+    let on_cpu = cpu.evaluate(program, frame, field.function, points)?;
+    let on_gpu = gpu.evaluate(program, frame, field.function, points)?;
+    Ok(FieldRow {
+        cpu: compare::field(&on_cpu, &expected, outputs),
+        gpu: compare::field(&on_gpu, &expected, outputs),
+        apart: compare::apart(&on_cpu, &on_gpu, &expected),
+    })
+}
+
+fn compare_pictures(
+    program: &Program,
+    frame: &Frame,
+    size: [u32; 2],
+    [cpu, gpu]: [&Device; 2],
+) -> Result<ImageReport, Failure> {
+    let choice = vol_runtime_cpu::choose_step(program, frame, size, MAX_ERROR);
+    let job = Job { size, step: choice.step, shadow_step: choice.shadow_step };
+    let on_cpu = cpu.prepare(program)?.render(frame, &job, &|_| {}, &CANCELLED)?;
+    let on_gpu = gpu.prepare(program)?.render(frame, &job, &|_| {}, &CANCELLED)?;
+    Ok(compare::images(&on_cpu.image, &on_gpu.image, GPU_IMAGE))
+}
+
+const PICTURE_HEADINGS: [&str; 6] = ["picture", "pixels", "max |cpu-gpu|", "at", "over tolerance", ""];
+
+fn picture_row(report: &ImageReport, [width, height]: [u32; 2]) -> Vec<String> {
+    let [column, row] = report.worst_pixel;
+    vec![
+        format!("{width}x{height}"),
+        report.pixels.to_string(),
+        format!("{:.1e}", report.max),
+        format!("{column},{row}"),
+        format!("{:.3} %", 100.0 * report.share_over),
+        verdict(report.passes()),
+    ]
+}
+
+fn verdict(passes: bool) -> String {
+    if passes { "ok" } else { "FAILED" }.to_owned()
+}
+
+/// The size scaled down so that no side is longer than `longest`.
+fn at_most([width, height]: [u32; 2], longest: u32) -> [u32; 2] {
+    let side = width.max(height);
+    if side <= longest {
+        return [width, height];
+    }
+    [width, height].map(|length| (u64::from(length) * u64::from(longest) / u64::from(side)).max(1) as u32)
+}
+
+/// Writes rows to standard output, the first column aligned left and the others right.
+fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = io::stdout().lock();
+    for row in rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
+            0 => format!("{cell:<width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        let line = cells.collect::<Vec<_>>().join("  ");
+        writeln!(out, "{}", line.trim_end()).map_err(|error| Failure::stdout(&error))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn sizes_keep_their_aspect() {
+        assert_eq!(super::at_most([960, 540], 256), [256, 144]);
+        assert_eq!(super::at_most([32, 18], 256), [32, 18]);
+        assert_eq!(super::at_most([1, 16384], 256), [1, 256]);
+    }
+}

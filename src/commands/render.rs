@@ -1,0 +1,171 @@
+//! `vol render`: a scene as a picture, or one picture per frame.
+
+use std::path::Path;
+use std::time::Instant;
+
+use vol::backend::{Choice, Device, Renderer};
+use vol::failure::{Failure, Message};
+use vol::output::{self, Format, atomic};
+use vol::session::Moment;
+use vol_compiler::frame::Job;
+
+use super::progress::Progress;
+use super::stats::{Phases, Stats, timed};
+use super::values::{FrameRange, Size};
+use super::{CANCELLED, Prepared};
+use crate::cli;
+
+pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
+    let started = Instant::now();
+    check_outputs(arguments)?;
+    super::catch_interrupts()?;
+    if let Some(threads) = arguments.threads {
+        limit_threads(threads.into())?;
+    }
+    let prepared = Prepared::new(&arguments.scene)?;
+    let device = Device::open(match arguments.backend {
+        cli::Backend::Cpu => Choice::Cpu,
+        cli::Backend::Gpu => Choice::Gpu,
+        cli::Backend::Auto => Choice::Auto,
+    })?;
+    let mut stats = new_stats(arguments, &prepared, &device);
+    render(arguments, &prepared, &device, &mut stats)?;
+    if let Some(path) = &arguments.stats {
+        write_stats(&stats, path)?;
+    }
+    print_summary(arguments, &stats, started);
+    Ok(())
+}
+
+/// Finds what would fail after the work is done before it starts.
+fn check_outputs(arguments: &cli::Render) -> Result<(), Failure> {
+    Format::of(&arguments.output)?;
+    let mut output = arguments.output.clone();
+    if let Some(FrameRange { first, last }) = arguments.frames {
+        if first != last && !output::has_frame_number(&output) {
+            let text = format!("all frames would be written to `{}`", output.display());
+            let help = "put #### into the name where the frame's number belongs, as in frame.####.png";
+            return Err(Failure::usage(text).with_help(help));
+        }
+        output = output::frame_path(&output, first);
+    }
+    atomic::probe(&output)?;
+    arguments.stats.as_deref().map_or(Ok(()), atomic::probe)
+}
+
+/// Limits all parallel work of this process.
+fn limit_threads(threads: usize) -> Result<(), Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|error| Failure::usage(format!("cannot start {threads} threads: {error}")))
+}
+
+fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> Stats {
+    let session = &prepared.session;
+    Stats {
+        version: env!("CARGO_PKG_VERSION"),
+        scene: session.file.name.clone(),
+        backend: device.name(),
+        device: device.description(),
+        size: arguments.size.map_or(session.program.render.size, |Size(size)| size),
+        frames: 0,
+        seed: arguments.seed,
+        max_error: arguments.max_error,
+        step: None,
+        shadow_step: None,
+        estimate: 0.0,
+        work: None,
+        milliseconds: Phases {
+            check: session.check_time,
+            compile: session.compile_time,
+            ..Phases::default()
+        },
+    }
+}
+
+/// Renders and writes the pictures that the arguments ask for.
+fn render(
+    arguments: &cli::Render,
+    prepared: &Prepared,
+    device: &Device,
+    stats: &mut Stats,
+) -> Result<(), Failure> {
+    let Prepared { session, params, moment } = prepared;
+    let frames = arguments.frames.map_or(1, |f| u64::from(f.last - f.first) + 1);
+    let pixels = stats.size.map(u64::from).iter().product();
+    let renderer = timed(&mut stats.milliseconds.prepare, || device.prepare(&session.program))?;
+    let mut pictures =
+        Pictures { prepared, renderer, pixels, progress: Progress::new(pixels * frames), stats };
+    let Some(FrameRange { first, last }) = arguments.frames else {
+        return pictures.render(*moment, &arguments.output);
+    };
+    for frame in first..=last {
+        let moment = session.moment_of_frame(params, frame)?;
+        pictures.render(moment, &output::frame_path(&arguments.output, frame))?;
+    }
+    Ok(())
+}
+
+/// What the pictures of one run have in common.
+struct Pictures<'a> {
+    prepared: &'a Prepared,
+    renderer: Renderer<'a>,
+    /// Of one picture.
+    pixels: u64,
+    progress: Progress,
+    stats: &'a mut Stats,
+}
+
+impl Pictures<'_> {
+    /// Renders one picture and writes it.
+    fn render(&mut self, moment: Moment, path: &Path) -> Result<(), Failure> {
+        super::stop_if_cancelled()?;
+        let Prepared { session, params, .. } = self.prepared;
+        let Stats { size, max_error, frames, milliseconds: phases, .. } = &mut *self.stats;
+        let frame = session.frame(params, moment, *size)?;
+        // Choose the distance between samples from a few rays.
+        let choice = timed(&mut phases.pilot, || {
+            vol_runtime_cpu::choose_step(&session.program, &frame, *size, *max_error)
+        });
+        super::stop_if_cancelled()?;
+        // Compute the picture.
+        let job = Job { size: *size, step: choice.step, shadow_step: choice.shadow_step };
+        let before = self.pixels * *frames;
+        let progress = |done| self.progress.at(before + done);
+        let rendered =
+            timed(&mut phases.render, || self.renderer.render(&frame, &job, &progress, &CANCELLED))?;
+        super::stop_if_cancelled()?;
+        timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
+        self.stats.add(&choice, rendered.work);
+        Ok(())
+    }
+}
+
+fn write_stats(stats: &Stats, path: &Path) -> Result<(), Failure> {
+    atomic::write(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, stats)?;
+        out.write_all(b"\n")
+    })
+}
+
+fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
+    if stats.estimate > stats.max_error {
+        let text = format!(
+            "the estimated error {:.1e} is above the {:.1e} asked for",
+            stats.estimate, stats.max_error
+        );
+        let help = "the steps are as small as they get; look at the picture, or allow more with --max-error";
+        super::print_message("warning", &Message { text, help: Some(help.to_owned()) });
+    }
+    let [width, height] = stats.size;
+    let frames = match stats.frames {
+        1 => String::new(),
+        frames => format!("{frames} frames of "),
+    };
+    super::print_line(&format!(
+        "{}: {frames}{width}x{height} in {:.2} s on {}, estimated error {:.1e}",
+        arguments.output.display(),
+        started.elapsed().as_secs_f64(),
+        stats.device,
+        stats.estimate,
+    ));
+}

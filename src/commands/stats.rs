@@ -1,0 +1,95 @@
+//! `--stats FILE.json`: what a render did and how long each phase took.
+
+use std::time::{Duration, Instant};
+
+use serde::ser::SerializeMap as _;
+use serde::{Serialize, Serializer};
+use vol::backend::Work;
+use vol_runtime_cpu::StepChoice;
+
+/// The file's content; of several frames, sums and the worst.
+#[derive(Debug, Serialize)]
+pub(super) struct Stats {
+    /// Version of `vol`.
+    pub(super) version: &'static str,
+    pub(super) scene: String,
+    /// `cpu` or `gpu`.
+    pub(super) backend: &'static str,
+    /// The device in words.
+    pub(super) device: String,
+    /// Width and height in pixels.
+    pub(super) size: [u32; 2],
+    pub(super) frames: u64,
+    /// Recorded only: nothing is random at present.
+    pub(super) seed: u64,
+    pub(super) max_error: f32,
+    /// Distance between samples of media along camera rays; the smallest of all frames.
+    pub(super) step: Option<f32>,
+    /// The same along shadow rays.
+    pub(super) shadow_step: Option<f32>,
+    /// Estimated error; the largest of all frames.
+    pub(super) estimate: f32,
+    /// `null` where the device does not count.
+    #[serde(flatten, serialize_with = "work")]
+    pub(super) work: Option<Work>,
+    pub(super) milliseconds: Phases,
+}
+
+impl Stats {
+    /// Adds one picture.
+    pub(super) fn add(&mut self, choice: &StepChoice, work: Option<Work>) {
+        let smaller = |step: Option<f32>, other: f32| Some(step.map_or(other, |step| step.min(other)));
+        self.step = smaller(self.step, choice.step);
+        self.shadow_step = smaller(self.shadow_step, choice.shadow_step);
+        self.estimate = self.estimate.max(choice.estimate);
+        self.work = match (self.frames, self.work, work) {
+            (0, _, work) => work,
+            (_, Some(before), Some(work)) => Some(before.plus(work)),
+            _ => None,
+        };
+        self.frames += 1;
+    }
+}
+
+/// Time per phase.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Phases {
+    /// Parsing and checking the scene.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) check: Duration,
+    /// Compiling it.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) compile: Duration,
+    /// Compiling the shader for the device.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) prepare: Duration,
+    /// Choosing the step size.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) pilot: Duration,
+    /// Computing the pictures.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) render: Duration,
+    /// Encoding and writing them.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) write: Duration,
+}
+
+fn work<S: Serializer>(work: &Option<Work>, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(3))?;
+    map.serialize_entry("rays", &work.map(|work| work.rays))?;
+    map.serialize_entry("samples", &work.map(|work| work.samples))?;
+    map.serialize_entry("evaluations", &work.map(|work| work.evaluations))?;
+    map.end()
+}
+
+fn milliseconds<S: Serializer>(time: &Duration, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(time.as_secs_f64() * 1e3)
+}
+
+/// Runs `work` and adds the time it took.
+pub(super) fn timed<T>(total: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let started = Instant::now();
+    let value = work();
+    *total += started.elapsed();
+    value
+}

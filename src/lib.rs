@@ -1,0 +1,14 @@
+//! What the `vol` command is made of, without its argument parsing and its printing.
+//!
+//! ```text
+//! path ──session──► Program ──frame──► Frame ──backend──► Image ──output──► PNG, EXR
+//!                                        └──compare──► reports of `vol diff` and of the tests
+//! ```
+//!
+//! Nothing in here prints or exits: a [`failure::Failure`] goes up to `main`.
+
+pub mod backend;
+pub mod compare;
+pub mod failure;
+pub mod output;
+pub mod session;

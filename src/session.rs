@@ -1,0 +1,173 @@
+//! From a scene file to a frame: what every command does before its own work.
+//!
+//! ```text
+//! path ──read──► SourceFile ──analyse, compile──► Session ──params, moment──► Frame
+//! ```
+
+mod params;
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use vol_compiler::frame::Frame;
+use vol_compiler::program::{Field, Program, Slot};
+use vol_compiler::{library, lower, reference};
+use vol_language::diag::Diagnostic;
+use vol_language::nearest::nearest;
+use vol_language::source::{MAX_SOURCE_BYTES, SourceError, SourceFile};
+
+use crate::failure::Failure;
+
+/// A scene that is ready to render.
+#[derive(Debug)]
+pub struct Session {
+    /// The scene's text.
+    pub file: SourceFile,
+    /// The compiled scene.
+    pub program: Program,
+    /// What is suspicious but no error.
+    pub warnings: Vec<Diagnostic>,
+    /// How long parsing and checking took.
+    pub check_time: Duration,
+    /// How long compiling took.
+    pub compile_time: Duration,
+}
+
+/// A moment of the animation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// Seconds since the start.
+    pub time: f64,
+    /// Number of the frame.
+    pub frame: f64,
+}
+
+/// Reads a scene file; of a file over the size limit no more than the limit is read.
+///
+/// # Errors
+/// A usage failure if it cannot be read, a content failure if it is no scene text.
+pub fn read(path: &Path) -> Result<SourceFile, Failure> {
+    let failed = |error| Failure::io("cannot read", path, error);
+    let file = File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(Failure::io("cannot read", path, "it is a folder, not a scene"));
+    }
+    let mut bytes = Vec::new();
+    file.take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
+    SourceFile::from_bytes(path.display().to_string(), bytes).map_err(|error| {
+        let error = match error {
+            // What was read stops at the limit.
+            SourceError::TooLarge { bytes } => {
+                SourceError::TooLarge { bytes: bytes.max(metadata.len() as usize) }
+            }
+            SourceError::BinaryGrid | SourceError::NotUtf8 { .. } => error,
+        };
+        Failure::content(format!("cannot use `{}`: {error}", path.display()))
+    })
+}
+
+/// Reads, checks and compiles a scene.
+///
+/// # Errors
+/// As [`read`], and a scene failure with all the mistakes found.
+pub fn load(path: &Path) -> Result<Session, Failure> {
+    compile(read(path)?)
+}
+
+/// Checks and compiles a scene text.
+///
+/// # Errors
+/// A scene failure with all the mistakes found.
+pub fn compile(file: SourceFile) -> Result<Session, Failure> {
+    let started = Instant::now();
+    let (scene, mut diagnostics) = vol_language::analyse(&file, &library::library());
+    let check_time = started.elapsed();
+    let Some(scene) = scene else {
+        return Err(Failure::Scene { file: Box::new(file), diagnostics });
+    };
+    let started = Instant::now();
+    let (program, found) = lower::compile(&scene);
+    let compile_time = started.elapsed();
+    diagnostics.extend(found);
+    match program {
+        Some(program) => Ok(Session { file, program, warnings: diagnostics, check_time, compile_time }),
+        None => Err(Failure::Scene { file: Box::new(file), diagnostics }),
+    }
+}
+
+impl Session {
+    /// The values of all params, in the program's order: the defaults, and what `-D` sets instead.
+    ///
+    /// # Errors
+    /// A usage failure for an unknown param, or a value that is not of its type or range.
+    pub fn params(&self, definitions: &[(String, String)]) -> Result<Vec<Vec<f64>>, Failure> {
+        params::values(&self.program.params, definitions)
+    }
+
+    /// The scene at one moment, framed for a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// A scene failure if the scene makes no sense at that moment.
+    pub fn frame(&self, params: &[Vec<f64>], moment: Moment, size: [u32; 2]) -> Result<Frame, Failure> {
+        let frame = self.program.frame(params, moment.time, moment.frame, size);
+        frame.map_err(|diagnostic| Failure::Scene {
+            file: Box::new(self.file.clone()),
+            diagnostics: vec![diagnostic],
+        })
+    }
+
+    /// The moment `time` seconds after the start.
+    ///
+    /// # Errors
+    /// As [`Session::moment_of_frame`].
+    pub fn moment_at(&self, params: &[Vec<f64>], time: f64) -> Result<Moment, Failure> {
+        let fps = self.fps(params)?;
+        // A time that means the start of a frame may fall just short of it: 0.1 s · 30 = 3.0000000000000004.
+        Ok(Moment { time, frame: (time * fps + 1e-6).floor() })
+    }
+
+    /// The moment at which frame number `frame` starts.
+    ///
+    /// # Errors
+    /// A content failure if the scene's frame rate is not a positive number.
+    pub fn moment_of_frame(&self, params: &[Vec<f64>], frame: u32) -> Result<Moment, Failure> {
+        let frame = f64::from(frame);
+        Ok(Moment { time: frame / self.fps(params)?, frame })
+    }
+
+    /// Frames per second, as the scene says at its start.
+    fn fps(&self, params: &[Vec<f64>]) -> Result<f64, Failure> {
+        let Slot(slot) = self.program.render.fps;
+        let inputs: Vec<f64> = [0.0, 0.0].into_iter().chain(params.iter().flatten().copied()).collect();
+        let numbers = reference::evaluate(&self.program.module.frame, &inputs, &[], &[]);
+        let fps = numbers[slot as usize];
+        if fps > 0.0 && fps.is_finite() {
+            return Ok(fps);
+        }
+        let text = format!("`{}` renders {fps} frames per second", self.file.name);
+        Err(Failure::content(text).with_help("set `fps` of the render block to a number above 0"))
+    }
+
+    /// The field called `name`.
+    ///
+    /// # Errors
+    /// A usage failure that lists the scene's fields.
+    pub fn field(&self, name: &str) -> Result<&Field, Failure> {
+        let fields = &self.program.fields;
+        if let Some(field) = fields.iter().find(|field| field.name == name) {
+            return Ok(field);
+        }
+        let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+        let failure = Failure::usage(format!("`{}` has no field `{name}`", self.file.name));
+        Err(match nearest(name, names.iter().copied()) {
+            _ if names.is_empty() => failure.with_help("the scene has no fields"),
+            Some(near) => {
+                failure.with_help(format!("did you mean `{near}`? the fields are: {}", names.join(", ")))
+            }
+            None => failure.with_help(format!("the fields are: {}", names.join(", "))),
+        })
+    }
+}

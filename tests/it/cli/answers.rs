@@ -1,0 +1,200 @@
+//! What `vol check`, `compile`, `query` and `diff` say.
+
+use super::{Outcome, Sandbox, equal, trial};
+#[cfg(feature = "gpu")]
+use crate::gpu_device::gpu_trial;
+use libtest_mimic::{Failed, Trial};
+
+pub(super) fn trials() -> Vec<Trial> {
+    let trials = vec![
+        trial("help_and_version", help),
+        trial("check::fine", check_fine),
+        trial("check::human", check_human),
+        trial("check::json", check_json),
+        trial("check::all_files_are_checked", check_all),
+        trial("compile::wgsl", compile),
+        trial("query::reference_and_cpu", query),
+        trial("query::points_from_a_file", query_file),
+        trial("query::params_and_time", query_params),
+        trial("query::several_components", query_components),
+        trial("query::unknown_field_lists_the_fields", query_unknown),
+        trial("query::broken_pipe_is_quiet", broken_pipe),
+        trial("gpu_by_name_without_a_device", no_device),
+    ];
+    trials.into_iter().chain(gpu_trials()).collect()
+}
+
+#[cfg(feature = "gpu")]
+fn gpu_trials() -> Vec<Trial> {
+    vec![
+        gpu_trial("cli::diff", |_| diff(&Sandbox::new()?)),
+        gpu_trial("cli::render_and_query", |_| gpu_by_name(&Sandbox::new()?)),
+    ]
+}
+
+#[cfg(not(feature = "gpu"))]
+fn gpu_trials() -> Vec<Trial> {
+    Vec::new()
+}
+
+fn help(sandbox: &Sandbox) -> Result<(), Failed> {
+    let help = sandbox.vol("--help")?.expect(0, &[])?.stdout;
+    for command in ["render", "check", "compile", "query", "diff", "Exit codes"] {
+        equal((command, help.contains(command)), (command, true))?;
+    }
+    let version = sandbox.vol("--version")?.expect(0, &[])?.stdout;
+    equal(version, format!("vol {}\n", env!("CARGO_PKG_VERSION")))
+}
+
+fn check_fine(sandbox: &Sandbox) -> Result<(), Failed> {
+    let outcome = sandbox.vol("check ball.vol fog.vol")?;
+    let words =
+        ["ball.vol: fine: 1 object, 0 media, 1 light, 6 params", "fog.vol: fine: 0 objects, 1 medium"];
+    let outcome = outcome.expect(0, &words)?;
+    equal(outcome.stdout, String::new())?;
+    let outcome = sandbox.vol("check ball.vol --message-format json")?.expect(0, &[])?;
+    equal((outcome.stdout, outcome.stderr), (String::new(), String::new()))
+}
+
+fn check_human(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("bad.vol", "object ball { shape: sphre(1) }\nobject cube { shape: 3 }\n")?;
+    let outcome = sandbox
+        .vol("check bad.vol")?
+        .expect(1, &["error[E", "bad.vol:1:", "sphre", "bad.vol:2:", "bad.vol: 2 errors"])?;
+    equal(outcome.stdout, String::new())?;
+    equal(outcome.stderr.contains('\u{1b}'), false)
+}
+
+fn check_json(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("bad.vol", "object ball { shape: sphre(1) }\nobject cube { shape: 3 }\n")?;
+    let outcome = sandbox.vol("check bad.vol --message-format json")?.expect(1, &[])?;
+    equal(outcome.stderr, String::new())?;
+    let lines: Result<Vec<serde_json::Value>, _> = outcome.stdout.lines().map(serde_json::from_str).collect();
+    let lines = lines?;
+    equal(lines.len(), 2)?;
+    equal(lines.iter().all(|line| line["severity"] == "error" && line["file"] == "bad.vol"), true)
+}
+
+fn check_all(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("bad.vol", "object ball {")?;
+    sandbox.vol("check bad.vol ball.vol")?.expect(1, &["bad.vol:1", "ball.vol: fine"])?;
+    // The worst outcome decides, whatever the order.
+    sandbox
+        .vol("check missing.vol bad.vol ball.vol")?
+        .expect(2, &["cannot read `missing.vol`", "bad.vol:1", "fine"])?;
+    sandbox.vol("check bad.vol missing.vol")?.expect(2, &[]).map(drop)
+}
+
+fn compile(sandbox: &Sandbox) -> Result<(), Failed> {
+    let text = sandbox.vol("compile ball.vol --target wgsl")?.expect(0, &[])?.stdout;
+    equal((text.contains("@compute"), text.ends_with('\n')), (true, true))?;
+    let outcome = sandbox.vol("compile ball.vol --target wgsl -o a.wgsl")?.expect(0, &[])?;
+    equal(outcome.stdout, String::new())?;
+    equal(String::from_utf8(sandbox.read("a.wgsl")?)?, text)?;
+    sandbox.vol("compile ball.vol")?.expect(2, &["--target"])?;
+    sandbox.vol("compile ball.vol --target glsl")?.expect(2, &["wgsl"]).map(drop)
+}
+
+fn query(sandbox: &Sandbox) -> Result<(), Failed> {
+    let points = "0,0,0\n\n# a comment\n 2 , 0 , 0\r\n0,0.5,0 # another\n";
+    for backend in ["reference", "cpu"] {
+        let run = format!("query ball.vol distance:ball --backend {backend}");
+        let outcome = sandbox.vol_reading(&run, points)?.expect(0, &[])?;
+        equal(outcome.stdout, "-1\n1\n-0.5\n".to_owned())?;
+    }
+    let outcome = sandbox.vol_reading("query fog.vol density:fog", "0.5,0,0\n")?.expect(0, &[])?;
+    equal(outcome.stdout, "2.5\n".to_owned())?;
+    let nothing = sandbox.vol_reading("query ball.vol distance:ball", "")?.expect(0, &[])?;
+    equal(nothing.stdout, String::new())
+}
+
+fn query_file(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("points.csv", "1,0,0\n3,0,0\n")?;
+    let outcome = sandbox.vol("query ball.vol distance:ball --at points.csv")?.expect(0, &[])?;
+    equal(outcome.stdout, "0\n2\n".to_owned())
+}
+
+fn query_params(sandbox: &Sandbox) -> Result<(), Failed> {
+    let cases = [
+        ("distance:ball -D size=0.5", "-0.5"),
+        ("distance:ball -D size=0.5 -D size=2", "-2"),
+        ("ramp --time 2s", "2"),
+        ("ramp --time 500ms -D place=(1,7,3)", "7.5"),
+        ("seen --time 0.3 -D turn=0.5rad -D steps=8", "11.5"),
+    ];
+    for (arguments, expected) in cases {
+        let outcome =
+            sandbox.vol_reading(&format!("query ball.vol {arguments}"), "0,0,0\n")?.expect(0, &[])?;
+        equal((arguments, outcome.stdout.trim_end()), (arguments, expected))?;
+    }
+    Ok(())
+}
+
+fn query_components(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write(
+        "field.vol",
+        "object ball { shape: sphere(1) }\nfn swap(p: vec3) -> vec3 { (p.y, p.x, 1 / 3) }\n",
+    )?;
+    let outcome = sandbox.vol_reading("query field.vol swap", "1,2,3\n-4,1e-7,0\n")?.expect(0, &[])?;
+    let rows: Result<Vec<Vec<f32>>, _> =
+        outcome.stdout.lines().map(|line| line.split(',').map(str::parse).collect()).collect();
+    equal(rows?, vec![vec![2.0, 1.0, 1.0 / 3.0], vec![1e-7, -4.0, 1.0 / 3.0]])
+}
+
+fn query_unknown(sandbox: &Sandbox) -> Result<(), Failed> {
+    let outcome = sandbox.vol("query ball.vol distance:bell")?;
+    let words = ["no field `distance:bell`", "help: did you mean `distance:ball`?", "ramp"];
+    outcome.expect(2, &words)?;
+    sandbox.vol("query ball.vol xyz")?.expect(2, &["help: the fields are: ", "distance:ball"]).map(drop)
+}
+
+/// `vol query … | head -0` with more output than a pipe holds.
+fn broken_pipe(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("points.csv", "0.1,0.2,0.3\n".repeat(100_000))?;
+    let mut command =
+        sandbox.command(["query", "ball.vol", "distance:ball", "--at", "points.csv", "--backend", "cpu"]);
+    let piped = std::process::Stdio::piped;
+    let mut child = command.stdout(piped()).stderr(piped()).spawn()?;
+    drop(child.stdout.take());
+    let outcome = Outcome::from(child.wait_with_output()?).expect(0, &[])?;
+    equal(outcome.stderr, String::new())
+}
+
+fn no_device(sandbox: &Sandbox) -> Result<(), Failed> {
+    for arguments in [
+        "render ball.vol -o a.png --backend gpu",
+        "diff ball.vol",
+        "query ball.vol distance:ball --backend gpu",
+    ] {
+        let mut command = sandbox.command(arguments.split_whitespace());
+        let output = command.env("VK_DRIVER_FILES", "/nowhere.json").output()?;
+        Outcome::from(output).expect(3, &["error: ", "CPU"])?;
+    }
+    equal(sandbox.new_files()?, vec![])
+}
+
+#[cfg(feature = "gpu")]
+fn diff(sandbox: &Sandbox) -> Result<(), Failed> {
+    for (scene, fields) in [("ball.vol", "distance:ball"), ("fog.vol", "density:fog")] {
+        let outcome =
+            sandbox.vol(&format!("diff {scene} --points 500"))?.expect(0, &["CPU, ", " against GPU, "])?;
+        for word in ["undecided", "|cpu-ref|/bound", "|gpu-ref|/bound", fields, "over tolerance", "32x18"] {
+            equal((word, outcome.stdout.contains(word)), (word, true))?;
+        }
+        equal(outcome.stdout.contains("FAILED"), false)?;
+    }
+    let outcome =
+        sandbox.vol("diff ball.vol --points 10 --size 8x4 --time 1s -D size=0.5")?.expect(0, &[])?;
+    equal(outcome.stdout.contains("8x4"), true)
+}
+
+#[cfg(feature = "gpu")]
+fn gpu_by_name(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox
+        .vol("render fog.vol -o a.png --backend gpu --stats s.json")?
+        .expect(0, &["a.png: 32x18", "on GPU, "])?;
+    let stats: serde_json::Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
+    equal(stats["backend"].as_str(), Some("gpu"))?;
+    let outcome = sandbox.vol_reading("query ball.vol distance:ball --backend gpu", "0,0,0\n0,3,0\n")?;
+    equal(outcome.expect(0, &[])?.stdout, "-1\n2\n".to_owned())
+}

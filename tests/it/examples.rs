@@ -1,0 +1,89 @@
+//! Every example: compiles, renders the same bits for any number of threads, agrees with the f64
+//! reference, and on the GPU with the CPU.
+
+use crate::support::{compile_file, ensure, examples, frame, render};
+use libtest_mimic::{Failed, Trial};
+use std::path::Path;
+use vol::compare;
+use vol_compiler::frame::{Image, Job, Pixel};
+
+/// A small picture.
+const SIZE: [u32; 2] = [48, 27];
+
+/// Smaller still: the reference is slow.
+const REFERENCE_SIZE: [u32; 2] = [16, 9];
+
+/// A coarse comb: agreement does not need accuracy.
+const JOB: Job = Job { size: SIZE, step: 0.05, shadow_step: 0.1 };
+
+/// f32 against f64, the same comb: rounding alone. The examples differ by at most 4e-6.
+const PRECISION: compare::ImageClass =
+    compare::ImageClass { name: "PRECISION", threshold: 2e-5, allowed_share: 0.03, hard_cap: 0.02 };
+
+/// The trials of this file.
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for (name, path) in examples() {
+        let scene = path.clone();
+        let trial =
+            Trial::test(format!("examples::{name}_is_the_same_on_any_threads"), move || threads(&scene));
+        trials.push(trial);
+        let scene = path.clone();
+        let trial =
+            Trial::test(format!("examples::{name}_agrees_with_the_reference"), move || reference(&scene));
+        trials.push(trial);
+        #[cfg(feature = "gpu")]
+        trials.push(crate::gpu_device::gpu_trial(
+            &format!("examples::{name}_agrees_with_the_cpu"),
+            move |gpu| agrees(gpu, &path),
+        ));
+    }
+    trials
+}
+
+fn threads(path: &Path) -> Result<(), Failed> {
+    let program = compile_file(path)?;
+    let frame = frame(&program, 0.4, SIZE)?;
+    let one = render(&program, &frame, &JOB, 1)?;
+    ensure(has_content(&one), || "the picture is empty".into())?;
+    for threads in [2, 3] {
+        let other = render(&program, &frame, &JOB, threads)?;
+        ensure(compare::images(&one, &other, compare::EXACT).passes(), || {
+            format!("{threads} threads differ from one")
+        })?;
+    }
+    Ok(())
+}
+
+fn has_content(image: &Image) -> bool {
+    let background = image.pixels[0];
+    let finite = image.pixels.iter().all(|pixel| pixel.color.iter().all(|c| c.is_finite()));
+    finite && image.pixels.iter().any(|pixel| compare::difference(pixel, &background) > 0.05)
+}
+
+fn reference(path: &Path) -> Result<(), Failed> {
+    let program = compile_file(path)?;
+    let frame = frame(&program, 0.4, REFERENCE_SIZE)?;
+    let job = Job { size: REFERENCE_SIZE, ..JOB };
+    let actual = render(&program, &frame, &job, 2)?;
+    let expected = vol_runtime_cpu::render_reference(&program, &frame, &job);
+    let pixel = |values: &[f64; 7]| {
+        let [r, g, b, tr, tg, tb, depth] = values.map(|value| value as f32);
+        Pixel { color: [r, g, b], transmittance: [tr, tg, tb], depth }
+    };
+    let expected = Image { pixels: expected.iter().map(pixel).collect(), ..actual.clone() };
+    let report = compare::images(&actual, &expected, PRECISION);
+    ensure(report.passes(), || format!("{report:?}"))
+}
+
+#[cfg(feature = "gpu")]
+fn agrees(gpu: &vol_runtime_gpu::Gpu, path: &Path) -> Result<(), Failed> {
+    let program = compile_file(path)?;
+    let frame = frame(&program, 0.4, SIZE)?;
+    let cpu = render(&program, &frame, &JOB, 2)?;
+    let renderer = vol_runtime_gpu::Renderer::new(gpu, &program)?;
+    let cancelled = std::sync::atomic::AtomicBool::new(false);
+    let gpu = renderer.render(gpu, &program, &frame, &JOB, &|_| {}, &cancelled)?;
+    let report = compare::images(&cpu, &gpu.ok_or("cancelled by nobody")?, compare::GPU_IMAGE);
+    ensure(report.passes(), || format!("{report:?}"))
+}

@@ -1,0 +1,36 @@
+//! One test binary over the whole of `vol`.
+//!
+//! A harness of its own, so that a GPU test on a machine without a device is listed as ignored, with
+//! the reason, instead of passing silently. Names are `topic::case`, GPU tests begin with `gpu::`.
+
+mod architecture;
+mod canary;
+mod cli;
+mod differential;
+mod examples;
+#[cfg(feature = "gpu")]
+mod gpu_device;
+mod physics;
+mod properties;
+mod spec;
+mod support;
+mod ui;
+
+use libtest_mimic::{Arguments, Trial};
+
+fn main() -> std::process::ExitCode {
+    let arguments = Arguments::from_args();
+    let mut trials: Vec<Trial> = Vec::new();
+    trials.extend(architecture::trials());
+    trials.extend(canary::trials());
+    trials.extend(cli::trials());
+    trials.extend(differential::trials());
+    trials.extend(examples::trials());
+    trials.extend(physics::trials());
+    trials.extend(properties::trials());
+    trials.extend(spec::trials());
+    trials.extend(ui::trials());
+    #[cfg(feature = "gpu")]
+    trials.extend(gpu_device::trials());
+    libtest_mimic::run(&arguments, trials).exit_code()
+}

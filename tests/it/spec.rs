@@ -1,0 +1,53 @@
+//! Every `vol` block of the documentation compiles without a message.
+
+use crate::support::compile_with_messages;
+use libtest_mimic::{Failed, Trial};
+use std::path::Path;
+
+/// Pages whose blocks are scenes.
+const PAGES: [&str; 2] = ["README.md", "docs/language.md"];
+
+/// The trials of this file: one per block.
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = Vec::new();
+    for page in PAGES {
+        let text =
+            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap_or_default();
+        let blocks = blocks(&text);
+        let count = blocks.len();
+        trials.push(Trial::test(format!("spec::{page}_has_blocks"), move || {
+            if count > 0 { Ok(()) } else { Err("no block of vol code was found".into()) }
+        }));
+        for (line, block) in blocks {
+            trials.push(Trial::test(format!("spec::{page}:{line}"), move || compiles(&block)));
+        }
+    }
+    trials
+}
+
+fn compiles(block: &str) -> Result<(), Failed> {
+    // A block that shows definitions alone becomes a scene by adding a ball.
+    let whole = ["object ", "medium "].iter().any(|item| block.contains(item));
+    let scene =
+        if whole { block.to_owned() } else { format!("{block}\nobject ball {{ shape: sphere(1) }}\n") };
+    let (program, messages) = compile_with_messages("block.vol", &scene);
+    if program.is_some() && messages.is_empty() { Ok(()) } else { Err(messages.into()) }
+}
+
+/// The fenced `vol` blocks of a page with the line on which each begins.
+fn blocks(page: &str) -> Vec<(usize, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(usize, String)> = None;
+    for (number, line) in page.lines().enumerate() {
+        match (&mut open, line.trim_end()) {
+            (None, "```vol") => open = Some((number + 2, String::new())),
+            (Some(_), "```") => blocks.extend(open.take()),
+            (Some((_, text)), line) => {
+                text.push_str(line);
+                text.push('\n');
+            }
+            (None, _) => {}
+        }
+    }
+    blocks
+}

@@ -1,0 +1,106 @@
+//! Scenes and functions made ready for tests.
+
+use libtest_mimic::Failed;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use vol_compiler::frame::{Frame, Image, Job};
+pub(crate) use vol_compiler::ir::verify::random::Random;
+use vol_compiler::ir::{Function, FunctionId, Module};
+use vol_compiler::program::Program;
+use vol_language::source::SourceFile;
+
+/// The scenes of `examples/`, in alphabetical order.
+pub(crate) fn examples() -> Vec<(String, PathBuf)> {
+    scenes_in("examples")
+}
+
+/// The `.vol` files of a folder of the repository with their stems, sorted.
+pub(crate) fn scenes_in(folder: &str) -> Vec<(String, PathBuf)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let entries =
+        std::fs::read_dir(&folder).map(|entries| entries.flatten().collect()).unwrap_or_else(|_| Vec::new());
+    let mut scenes: Vec<(String, PathBuf)> = entries
+        .into_iter()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "vol"))
+        .map(|path| (path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default(), path))
+        .collect();
+    scenes.sort();
+    scenes
+}
+
+/// Analyses and compiles a scene text; the rendered messages are the error.
+pub(crate) fn compile(name: &str, text: &str) -> Result<Program, Failed> {
+    let (program, messages) = compile_with_messages(name, text);
+    program.ok_or_else(|| messages.into())
+}
+
+/// Analyses and compiles a scene text and renders what there is to say about it.
+pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>, String) {
+    let file = SourceFile::new(name, text);
+    let (scene, mut diagnostics) = vol_language::analyse(&file, &vol_compiler::library::library());
+    let mut program = None;
+    if let Some(scene) = scene {
+        let (compiled, more) = vol_compiler::lower::compile(&scene);
+        program = compiled;
+        diagnostics.extend(more);
+    }
+    if let Some(ready) = &program
+        && let Err(diagnostic) = ready.frame(&ready.default_params(), 0.0, 0.0, ready.render.size)
+    {
+        diagnostics.push(diagnostic);
+        program = None;
+    }
+    (program, vol_language::diag::render::human(&file, &diagnostics, false))
+}
+
+/// Compiles a file of the repository.
+pub(crate) fn compile_file(path: &Path) -> Result<Program, Failed> {
+    let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    compile(&path.display().to_string(), &text)
+}
+
+/// A frame at a time with default params.
+pub(crate) fn frame(program: &Program, time: f64, size: [u32; 2]) -> Result<Frame, Failed> {
+    program.frame(&program.default_params(), time, 0.0, size).map_err(|diagnostic| diagnostic.message.into())
+}
+
+/// A small picture on the CPU.
+pub(crate) fn render(program: &Program, frame: &Frame, job: &Job, threads: usize) -> Result<Image, Failed> {
+    let cancelled = AtomicBool::new(false);
+    vol_runtime_cpu::render(program, frame, job, Some(threads), &|_| {}, &cancelled)
+        .map(|(image, _)| image)
+        .ok_or_else(|| "the render was cancelled by nobody".into())
+}
+
+/// A scene text rendered on the CPU with a given step.
+pub(crate) fn picture(text: &str, size: [u32; 2], step: f32) -> Result<Image, Failed> {
+    let program = compile("test.vol", text)?;
+    let frame = frame(&program, 0.0, size)?;
+    render(&program, &frame, &Job { size, step, shadow_step: step }, 2)
+}
+
+/// A program that only holds one function, to evaluate it on every backend. Its curves are those of a
+/// medium with two bent tubes.
+pub(crate) fn program_of(function: Function) -> Result<Program, Failed> {
+    let tubes = "medium a { region: tube(bezier((0, 0, 0), (0.4, 1.1, 0.2), (0, 2.2, 0)), radius: 0.3) }\n\
+                 medium b { region: tube(bezier((-1, 0, 0), (0.2, 0.1, 0.9), (0.7, -1, 0)), radius: 0.2) }";
+    let mut program = compile("function.vol", tubes)?;
+    program.module = Module { frame: program.module.frame, functions: vec![function] };
+    program.media.clear();
+    program.fields.clear();
+    Ok(program)
+}
+
+/// The first function of [`program_of`].
+pub(crate) const FIRST: FunctionId = FunctionId(0);
+
+/// A point in a box.
+pub(crate) fn point(random: &mut Random, lo: [f64; 3], hi: [f64; 3]) -> [f32; 3] {
+    [0, 1, 2].map(|i| random.between(lo[i], hi[i]) as f32)
+}
+
+/// Fails with a message unless a condition holds.
+pub(crate) fn ensure(condition: bool, message: impl FnOnce() -> String) -> Result<(), Failed> {
+    if condition { Ok(()) } else { Err(message().into()) }
+}

@@ -12,6 +12,7 @@ mod examples;
 mod gpu_device;
 mod physics;
 mod properties;
+mod shapes;
 mod spec;
 mod support;
 mod ui;
@@ -28,6 +29,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(examples::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());
+    trials.extend(shapes::trials());
     trials.extend(spec::trials());
     trials.extend(ui::trials());
     #[cfg(feature = "gpu")]

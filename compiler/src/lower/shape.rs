@@ -106,11 +106,11 @@ impl Shape {
                 smooth_max(&mut lowerer.graph, from, outside, *smooth)
             }
             Self::Translated { child, .. } | Self::Rotated { child, .. } => {
-                let inner = self.into_child(graph, p);
+                let inner = self.child_position(graph, p);
                 child.distance(lowerer, inner)?
             }
             Self::Scaled { child, factor } => {
-                let inner = self.into_child(graph, p);
+                let inner = self.child_position(graph, p);
                 let distance = child.distance(lowerer, inner)?;
                 lowerer.graph.mul(distance, *factor)
             }
@@ -127,7 +127,7 @@ impl Shape {
     }
 
     /// A point in the coordinates of the child of a transform.
-    fn into_child(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
+    fn child_position(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
         match self {
             Self::Translated { offset, .. } => [0, 1, 2].map(|i| graph.sub(p[i], offset[i])),
             Self::Rotated { columns, .. } => columns.map(|column| graph.dot(&column, &p)),
@@ -211,7 +211,7 @@ impl Shape {
         | Self::Rounded { child, .. }
         | Self::Displaced { child, .. } = self
         {
-            let inner = self.into_child(&mut lowerer.graph, p);
+            let inner = self.child_position(&mut lowerer.graph, p);
             return child.local_field(lowerer, inner, field, span);
         }
         let graph = &mut lowerer.graph;

@@ -101,6 +101,9 @@ pub struct MediumFrame {
     pub lighting: Lighting,
     /// The region is inside.
     pub bounds: Aabb,
+    /// The inside is in these boxes: for a tube one per part of its axis, with little outside
+    /// between them; for most shapes one, `bounds`. At most 64.
+    pub cells: Vec<Aabb>,
 }
 
 /// A light in one frame.
@@ -253,6 +256,7 @@ fn medium_frame(index: usize, medium: &crate::program::Medium, solid: Solid) -> 
         phase: medium.phase,
         lighting: medium.lighting,
         bounds: extent::rounded(solid.bounds),
+        cells: solid.cells.into_iter().map(extent::rounded).collect(),
     }
 }
 

@@ -20,7 +20,7 @@ pub(crate) mod tube;
 pub(crate) mod value;
 
 use crate::ir::graph::{Graph, Rate, Slots};
-use crate::ir::{Function, FunctionId, Module, ValueId};
+use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Program, Slot, Slot3};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
@@ -41,8 +41,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0404", "a choice between shapes, curves or lists depends on a run-time value"),
     ("E0405", "a value must be known at compile time"),
     ("E0406", "a local coordinate that this region does not have"),
-    ("E0407", "a shape that cannot be used here"),
-    ("E0408", "a function without a derivative displaces a surface"),
+    ("E0408", "a surface without a derivative: a tube as an object"),
     ("E0501", "a displacement is not bounded"),
 ];
 
@@ -168,6 +167,7 @@ impl<'a> Lowerer<'a> {
         let frame = self.slots.frame_function(&mut self.graph, self.frame_inputs);
         let mut module = Module { frame, functions: std::mem::take(&mut self.functions) };
         crate::passes::run(&mut module);
+        debug_assert_eq!(verify::module(&module, self.curves.len() as u32), Ok(()), "after lowering");
         let params = self.hir.params.iter().zip(&self.param_inputs);
         let params = params.map(|(param, &first_input)| crate::program::Param {
             name: param.name.clone(),

@@ -7,7 +7,7 @@
 //!
 //! * [`interp`] evaluates the program's functions for many points at once, with the kernels of
 //!   [`math`].
-//! * [`render`] is the integrator: what a picture means. Its twin for the GPU is
+//! * [`mod@render`] is the integrator: what a picture means. Its twin for the GPU is
 //!   `compiler/src/wgsl/render.wgsl` with its folder: same function names, same step comments.
 //!
 //! A picture does not depend on the number of threads, the order of the tiles or the sizes of the

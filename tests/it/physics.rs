@@ -148,7 +148,7 @@ fn hard_shadow_edge() -> Result<(), Failed> {
         if (0.2..1.0).contains(&place) {
             ensure(!lit, || format!("the floor at {place} is lit"))?;
         }
-        if place < -0.2 || place > 1.2 {
+        if !(-0.2..=1.2).contains(&place) {
             ensure(lit, || format!("the floor at {place} is dark"))?;
         }
     }

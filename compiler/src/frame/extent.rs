@@ -6,6 +6,7 @@ use crate::ir::{FunctionId, Module};
 use crate::ops::interval::Interval;
 use crate::program::{Extent, Slot, Slot3};
 use crate::reference;
+use glam::DVec3;
 use vol_language::diag::Diagnostic;
 use vol_language::source::Span;
 
@@ -23,11 +24,31 @@ pub(super) const EMPTY: Box3 = Box3 { lo: [f64::INFINITY; 3], hi: [f64::NEG_INFI
 const ALL: Box3 = Box3 { lo: [f64::NEG_INFINITY; 3], hi: [f64::INFINITY; 3] };
 
 /// Where a solid is and how fast its distance can change.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Solid {
     pub(super) bounds: Box3,
+    /// Boxes that cover the inside together, seldom all of `bounds`: one per part of a tube; else
+    /// one, `bounds`.
+    pub(super) cells: Vec<Box3>,
     /// Largest length of the gradient of the distance; 1 for distances proper.
     pub(super) steepness: f64,
+}
+
+impl Solid {
+    /// Moved.
+    fn placed(self, columns: [[f64; 3]; 3], offset: [f64; 3]) -> Self {
+        let cells = self.cells.into_iter().map(|b| placed(b, columns, offset)).collect();
+        Self { bounds: placed(self.bounds, columns, offset), cells, ..self }
+    }
+
+    /// Grown, or shrunk.
+    fn grown(self, by: f64) -> Self {
+        // A cell is the box of a slice. What is nearer than `by` to its rim may be off the slice and
+        // off the rim, by that much each; and shrinking a slice does not make it thinner.
+        let wider = std::f64::consts::SQRT_2 * by.max(0.0);
+        let cells = self.cells.into_iter().map(|b| grown(b, wider)).collect();
+        Self { bounds: grown(self.bounds, by), cells, ..self }
+    }
 }
 
 /// What extents are computed from.
@@ -44,28 +65,50 @@ const PARTS: usize = 4;
 /// Parts of a curve for the bound on its radius.
 const CURVE_PARTS: usize = 32;
 
+/// Most cells of a segment of a tube's axis: thinner slices save little more, and every point is
+/// compared with every cell.
+const SEGMENT_CELLS: usize = 16;
+
+/// Most cells of a solid.
+const MOST_CELLS: usize = 64;
+
+/// Least radius of a tube, as `lower/tube.rs` has it.
+const LEAST_RADIUS: f64 = 1e-6;
+
+/// Slower parts of an axis than this fraction of the fastest count as kinks.
+const SLOW: f64 = 1e-3;
+
+/// By how much of the radius an offset may be off the plane across the axis: rounding, generously.
+const OFF_PLANE: f64 = 1e-3;
+
+/// Rounding of a curve parameter, generously.
+const T_SLACK: f64 = 1e-6;
+
 impl Space<'_> {
     /// Bounds and steepness of a solid.
     ///
     /// # Errors
     /// A displacement without a bound.
     pub(super) fn solid(&self, extent: &Extent) -> Result<Solid, Diagnostic> {
-        let exact = |bounds| Solid { bounds, steepness: 1.0 };
+        let exact = |bounds| Solid { bounds, cells: vec![bounds], steepness: 1.0 };
         Ok(match extent {
             Extent::Unbounded => exact(ALL),
             Extent::Box { lo, hi } => exact(ordered(self.at3(*lo), self.at3(*hi))),
-            Extent::Tube { curve, radius } => exact(self.tube(*curve as usize, *radius)),
-            Extent::Union(parts) => self.combined(parts, EMPTY, enclose)?,
-            Extent::Intersection(parts) => self.combined(parts, ALL, common)?,
-            Extent::Complement(child) => Solid { bounds: ALL, ..self.solid(child)? },
+            Extent::Tube { curve, radius } => {
+                let cells = self.tube_cells(*curve as usize, *radius);
+                Solid { cells, ..exact(self.tube(*curve as usize, *radius)) }
+            }
+            Extent::Union(parts) => self.union(parts)?,
+            Extent::Intersection(parts) => self.intersection(parts)?,
+            Extent::Complement(child) => Solid { steepness: self.solid(child)?.steepness, ..exact(ALL) },
             Extent::Placed { child, columns, offset } => {
-                let child = self.solid(child)?;
                 let columns = columns.map(|column| self.at3(column));
-                Solid { bounds: placed(child.bounds, columns, self.at3(*offset)), ..child }
+                let offset = self.at3(*offset);
+                self.solid(child)?.placed(columns, offset)
             }
             Extent::Grown(child, by) => {
-                let child = self.solid(child)?;
-                Solid { bounds: grown(child.bounds, self.at(*by)), ..child }
+                let by = self.at(*by);
+                self.solid(child)?.grown(by)
             }
             Extent::Displaced { child, amount, slope, span } => {
                 let child = self.solid(child)?;
@@ -82,17 +125,34 @@ impl Space<'_> {
         slots.map(|slot| self.at(slot))
     }
 
-    fn combined(
-        &self,
-        parts: &[Extent],
-        start: Box3,
-        join: fn(Box3, Box3) -> Box3,
-    ) -> Result<Solid, Diagnostic> {
-        let mut solid = Solid { bounds: start, steepness: 1.0 };
+    fn union(&self, parts: &[Extent]) -> Result<Solid, Diagnostic> {
+        let mut solid = Solid { bounds: EMPTY, cells: Vec::new(), steepness: 1.0 };
         for part in parts {
             let part = self.solid(part)?;
-            solid.bounds = join(solid.bounds, part.bounds);
+            solid.bounds = enclose(solid.bounds, part.bounds);
+            solid.cells.extend(part.cells);
             solid.steepness = solid.steepness.max(part.steepness);
+        }
+        if solid.cells.len() > MOST_CELLS {
+            solid.cells = vec![solid.bounds];
+        }
+        Ok(solid)
+    }
+
+    /// The inside is in the cells of every part: those of the part with most of them are kept, as
+    /// they are. Clipped cells could be empty, and an empty box does not grow back.
+    fn intersection(&self, parts: &[Extent]) -> Result<Solid, Diagnostic> {
+        let mut solid = Solid { bounds: ALL, cells: Vec::new(), steepness: 1.0 };
+        for part in parts {
+            let part = self.solid(part)?;
+            solid.bounds = common(solid.bounds, part.bounds);
+            if part.cells.len() > solid.cells.len() {
+                solid.cells = part.cells;
+            }
+            solid.steepness = solid.steepness.max(part.steepness);
+        }
+        if solid.cells.len() <= 1 {
+            solid.cells = vec![solid.bounds];
         }
         Ok(solid)
     }
@@ -112,6 +172,34 @@ impl Space<'_> {
         grown(hull, largest)
     }
 
+    /// Boxes around consecutive parts of a tube: each that of the control points of the part of a
+    /// segment, grown by what the largest radius there reaches across the axis. The ends are flat, so
+    /// the offset from a foot inside is across the axis, but at a kink it may have any direction.
+    fn tube_cells(&self, curve: usize, radius: FunctionId) -> Vec<Box3> {
+        let segments = &self.curves[curve];
+        let parts = (MOST_CELLS / segments.len().max(1)).clamp(1, SEGMENT_CELLS);
+        let count = (segments.len() * parts) as f64;
+        let arc_length = Interval::new(0.0, self.tables[curve].length);
+        let fastest = segments.iter().flat_map(|s| [velocity(s, 0.0), velocity(s, 1.0)].map(DVec3::length));
+        let slow = SLOW * fastest.fold(0.0, f64::max);
+        let smooth = |place: usize| place == 0 || place == segments.len() || joins(segments, place, slow);
+        let mut boxes = Vec::with_capacity(segments.len() * parts);
+        for (index, segment) in segments.iter().enumerate() {
+            for part in 0..parts {
+                let place = boxes.len() as f64;
+                let t = [place / count - T_SLACK, (place + 1.0) / count + T_SLACK];
+                let t = Interval::new(t[0].max(0.0), t[1].min(1.0));
+                let largest = self.interval(radius, &[t, arc_length])[0].hi.max(LEAST_RADIUS);
+                let ends = [part, part + 1].map(|end| end as f64 / parts as f64);
+                let kink = part == 0 && !smooth(index) || part + 1 == parts && !smooth(index + 1);
+                let reach = if kink { [1.0; 3] } else { across(segment, ends, slow) };
+                boxes.push(widened(hull(segment, ends), reach.map(|part| part * largest)));
+            }
+        }
+        let run = boxes.len().div_ceil(MOST_CELLS).max(1);
+        boxes.chunks(run).map(|run| run.iter().copied().fold(EMPTY, enclose)).collect()
+    }
+
     fn interval(&self, function: FunctionId, inputs: &[Interval]) -> Vec<Interval> {
         reference::interval(self.module.function(function), inputs, self.uniforms, self.curves)
     }
@@ -128,14 +216,15 @@ impl Space<'_> {
         if !reach.is_finite() {
             // Not bounded everywhere: bounded near the shape will do, if it stays near.
             let near = grown(child.bounds, half_diagonal(child.bounds));
-            reach = self.interval(amount, &cells(near, 1)[0])[0].magnitude();
-            if !(reach <= half_diagonal(child.bounds)) {
+            reach = self.interval(amount, &grid(near, 1)[0])[0].magnitude();
+            let close = reach <= half_diagonal(child.bounds);
+            if !close {
                 return Err(unbounded(span));
             }
         }
-        let bounds = grown(child.bounds, reach);
+        let solid = child.grown(reach);
         let mut steepest: f64 = 0.0;
-        for cell in cells(bounds, PARTS) {
+        for cell in grid(solid.bounds, PARTS) {
             let gradient = self.interval(slope, &cell);
             let squared: f64 = gradient.iter().map(|g| g.magnitude() * g.magnitude()).sum();
             steepest = steepest.max(squared.sqrt());
@@ -143,7 +232,7 @@ impl Space<'_> {
         if !steepest.is_finite() {
             return Err(unbounded(span));
         }
-        Ok(Solid { bounds, steepness: child.steepness + steepest })
+        Ok(Solid { steepness: solid.steepness + steepest, ..solid })
     }
 }
 
@@ -153,12 +242,60 @@ fn unbounded(span: Span) -> Diagnostic {
         .with_help("use functions with a bounded slope, such as sin or perlin, or keep the values in range with clamp")
 }
 
+/// Box of the control points of the part of a segment between two parameters.
+fn hull(segment: &Quadratic, [from, to]: [f64; 2]) -> Box3 {
+    // The polar form of the segment: its control points are those at (from, from), (from, to), (to, to).
+    let blend = |u: f64, v: f64| {
+        [0, 1, 2].map(|i| {
+            let (a, b, c) = (segment.a[i], segment.b[i], segment.c[i]);
+            (1.0 - u) * (1.0 - v) * a + (u * (1.0 - v) + v * (1.0 - u)) * b + u * v * c
+        })
+    };
+    let points = [blend(from, from), blend(from, to), blend(to, to)];
+    if !points.iter().flatten().all(|c| c.is_finite()) {
+        return ALL;
+    }
+    points.into_iter().fold(EMPTY, |b, p| enclose(b, Box3 { lo: p, hi: p }))
+}
+
+/// Half the derivative of a segment.
+fn velocity(segment: &Quadratic, t: f64) -> DVec3 {
+    let [a, b, c] = [segment.a, segment.b, segment.c].map(DVec3::from);
+    (b - a).lerp(c - b, t)
+}
+
+/// Whether an axis goes on smoothly where segment `next` begins.
+fn joins(segments: &[Quadratic], next: usize, slow: f64) -> bool {
+    let (before, after) = (&segments[next - 1], &segments[next]);
+    let (from, to) = (velocity(before, 1.0), velocity(after, 0.0));
+    let straight = from.dot(to) >= (1.0 - 1e-8) * from.length() * to.length();
+    before.c == after.a && from.length() > slow && to.length() > slow && straight
+}
+
+/// How far a unit vector across a part of a segment reaches along each coordinate, at most.
+fn across(segment: &Quadratic, ends: [f64; 2], slow: f64) -> [f64; 3] {
+    let [from, to] = ends.map(|t| velocity(segment, t));
+    // The nearest to 0 on the line between the two velocities.
+    let change = to - from;
+    let nearest = (-from.dot(change) / change.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    let keeps_moving = (from + change * nearest).length() > slow;
+    if !keeps_moving {
+        return [1.0; 3];
+    }
+    let fastest = from.length().max(to.length());
+    [0, 1, 2].map(|i| {
+        let turns = from[i] * to[i] <= 0.0;
+        let along = if turns { 0.0 } else { from[i].abs().min(to[i].abs()) / fastest };
+        ((1.0 - along * along).max(0.0).sqrt() + OFF_PLANE).min(1.0)
+    })
+}
+
 fn half_diagonal(b: Box3) -> f64 {
     0.5 * (0..3).map(|i| (b.hi[i] - b.lo[i]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// The cells of a box cut into `parts` along each axis; axes without end are not cut.
-fn cells(b: Box3, parts: usize) -> Vec<[Interval; 3]> {
+/// A box cut into `parts` along each axis; axes without end are not cut.
+fn grid(b: Box3, parts: usize) -> Vec<[Interval; 3]> {
     let cut = |axis: usize| -> Vec<Interval> {
         let (lo, hi) = (b.lo[axis], b.hi[axis]);
         if !(lo.is_finite() && hi.is_finite()) {
@@ -196,7 +333,11 @@ fn common(a: Box3, b: Box3) -> Box3 {
 }
 
 fn grown(b: Box3, by: f64) -> Box3 {
-    Box3 { lo: b.lo.map(|c| c - by), hi: b.hi.map(|c| c + by) }
+    widened(b, [by; 3])
+}
+
+fn widened(b: Box3, by: [f64; 3]) -> Box3 {
+    Box3 { lo: [0, 1, 2].map(|i| b.lo[i] - by[i]), hi: [0, 1, 2].map(|i| b.hi[i] + by[i]) }
 }
 
 /// The box around the image of a box: per output axis, the sum of the columns' extremes.
@@ -206,10 +347,9 @@ fn placed(b: Box3, columns: [[f64; 3]; 3], offset: [f64; 3]) -> Box3 {
     }
     let mut image = Box3 { lo: offset, hi: offset };
     for (axis, column) in columns.iter().enumerate() {
-        for i in 0..3 {
+        for (i, &reach) in column.iter().enumerate() {
             // An axis that does not reach this coordinate adds nothing, however long it is.
-            let ends =
-                if column[i] == 0.0 { [0.0; 2] } else { [column[i] * b.lo[axis], column[i] * b.hi[axis]] };
+            let ends = if reach == 0.0 { [0.0; 2] } else { [reach * b.lo[axis], reach * b.hi[axis]] };
             image.lo[i] += ends[0].min(ends[1]);
             image.hi[i] += ends[0].max(ends[1]);
         }
@@ -222,3 +362,6 @@ pub(super) fn rounded(b: Box3) -> Aabb {
     let slack = |c: f64| if c.is_finite() { c.abs() * 1e-6 + 1e-9 } else { 0.0 };
     Aabb { lo: b.lo.map(|c| (c - slack(c)) as f32), hi: b.hi.map(|c| (c + slack(c)) as f32) }
 }
+
+#[cfg(test)]
+mod tests;

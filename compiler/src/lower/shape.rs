@@ -397,10 +397,10 @@ fn displaced_extent(
 /// Derivatives of a value with respect to the position.
 pub(crate) fn gradient(lowerer: &mut Lowerer<'_>, value: ValueId, span: Span) -> Lowered<Vec<ValueId>> {
     crate::passes::gradient::gradient(&mut lowerer.graph, value, &[0, 1, 2]).ok_or_else(|| {
-        let message = "the surface has no derivative here, so it can be neither lit nor marched safely";
+        let message = "a tube cannot be the surface of an object in this version";
         Box::new(
-            Diagnostic::error("E0408", message, span, "this uses the closest point of a curve")
-                .with_help("fill it with a medium instead, or build it from other shapes"),
+            Diagnostic::error("E0408", message, span, "this shape contains a tube")
+                .with_help("fill it with a medium: `medium name { region: … }`, or use `capsule`"),
         )
     })
 }

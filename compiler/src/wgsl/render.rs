@@ -21,14 +21,15 @@
 //! | 20 | `AT_BACKGROUND` | rgb |
 //! | 23 | `AT_LIGHT_COUNT` | number of lights |
 //! | 24 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale |
-//! | 24 + 8 objects | `AT_MEDIA` | 8 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, 0 |
+//! | 24 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 8 words per light of the frame: distant, position or direction xyz, color rgb, shadows |
+//! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
 use super::WgslError;
-use crate::frame::{Aabb, Frame, Image, Job, Pixel};
+use crate::frame::{Aabb, Frame, Image, Job, MediumFrame, Pixel};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
 use std::fmt::Write;
@@ -47,8 +48,14 @@ const INTEGRATOR: [&str; 7] = [
 /// Words before the objects.
 const HEADER_WORDS: usize = 24;
 
-/// Words of an object, of a medium and of a light.
+/// Words of an object and of a light.
 const RECORD_WORDS: usize = 8;
+
+/// Words of a medium.
+const MEDIUM_WORDS: usize = 9;
+
+/// Words of a cell.
+const CELL_WORDS: usize = 6;
 
 /// Words of `vol_output` per pixel.
 pub const PIXEL_WORDS: usize = 8;
@@ -110,11 +117,12 @@ fn glue(program: &Program) -> String {
         ("OBJECT_SLOTS", objects.max(1)),
         ("MEDIUM_SLOTS", media.max(1)),
         ("OBJECT_WORDS", RECORD_WORDS),
-        ("MEDIUM_WORDS", RECORD_WORDS),
+        ("MEDIUM_WORDS", MEDIUM_WORDS),
+        ("CELL_WORDS", CELL_WORDS),
         ("LIGHT_WORDS", RECORD_WORDS),
         ("AT_OBJECTS", HEADER_WORDS),
         ("AT_MEDIA", media_at),
-        ("AT_LIGHTS", media_at + RECORD_WORDS * media),
+        ("AT_LIGHTS", media_at + MEDIUM_WORDS * media),
     ];
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
@@ -214,10 +222,30 @@ pub fn padded(bounds: &Aabb) -> Option<Aabb> {
     if (0..3).any(|axis| bounds.lo[axis] > bounds.hi[axis]) {
         return None;
     }
-    let (lo, hi) = (finite(bounds.lo), finite(bounds.hi));
-    let size = lo.iter().chain(&hi).fold(0.0_f32, |size, x| size.max(x.abs()));
-    let margin = 1e-5 * size;
-    Some(Aabb { lo: lo.map(|x| x - margin), hi: hi.map(|x| x + margin) })
+    let held = Aabb { lo: finite(bounds.lo), hi: finite(bounds.hi) };
+    Some(wider(&held, margin(&held)))
+}
+
+/// The cells of a medium as the runtimes use them, all larger by as much: the region is outside
+/// wherever no cell is. None if that is not known, as of a medium with one cell, its box.
+#[must_use]
+pub fn padded_cells(medium: &MediumFrame) -> Vec<Aabb> {
+    let cells = medium.cells.iter().filter(|cell| (0..3).all(|axis| cell.lo[axis] <= cell.hi[axis]));
+    let near = |cell: &&Aabb| cell.lo.iter().chain(&cell.hi).all(|x| x.abs() < INFINITE);
+    if medium.cells.len() < 2 || !cells.clone().all(|cell| near(&cell)) {
+        return Vec::new();
+    }
+    let around = cells.clone().map(margin).fold(0.0, f32::max);
+    cells.map(|cell| wider(cell, around)).collect()
+}
+
+/// What rounding may take off a ray's entry into a box and its exit.
+fn margin(bounds: &Aabb) -> f32 {
+    1e-5 * bounds.lo.iter().chain(&bounds.hi).fold(0.0_f32, |size, x| size.max(x.abs()))
+}
+
+fn wider(bounds: &Aabb, by: f32) -> Aabb {
+    Aabb { lo: bounds.lo.map(|x| x - by), hi: bounds.hi.map(|x| x + by) }
 }
 
 /// The contents of `vol_input`: a frame, a job, and the part of the picture to render
@@ -232,32 +260,49 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4]) 
     words.extend([camera.origin, camera.forward, camera.right, camera.up, frame.background].concat());
     words.push(frame.lights.len() as f32);
     // Records of all objects and media of the program; those that are not in the frame stay 0.
-    let mut records = vec![[0.0; RECORD_WORDS]; program.objects.len() + program.media.len()];
+    let mut objects = vec![[0.0; RECORD_WORDS]; program.objects.len()];
     for object in &frame.objects {
         let state = if object.shows_normals { 2.0 } else { 1.0 };
-        records[object.index] = record(state, padded(&object.bounds), object.safe_scale);
+        objects[object.index] = record(state, padded(&object.bounds), [object.safe_scale]);
     }
+    let mut media = vec![[0.0; MEDIUM_WORDS]; program.media.len()];
+    let cells_at = words.len() + objects.as_flattened().len() + media.as_flattened().len();
+    let cells_at = cells_at + RECORD_WORDS * frame.lights.len();
+    let mut cells = Vec::new();
     for medium in &frame.media {
         let state = match medium.lighting {
             Lighting::None => 1.0,
             Lighting::Unshadowed => 2.0,
             Lighting::Shadowed => 3.0,
         };
-        records[program.objects.len() + medium.index] = record(state, padded(&medium.bounds), 0.0);
+        let own = padded_cells(medium);
+        let place = [cells_at + cells.len(), own.len()].map(|number| number as f32);
+        media[medium.index] = record(state, padded(&medium.bounds), place);
+        cells.extend(own.iter().flat_map(|cell| [cell.lo, cell.hi].concat()));
     }
-    words.extend(records.concat());
+    words.extend(objects.as_flattened());
+    words.extend(media.as_flattened());
     for light in &frame.lights {
         words.push(f32::from(u8::from(light.distant)));
         words.extend([light.position, light.color].concat());
         words.push(f32::from(u8::from(light.shadows)));
     }
+    words.extend(cells);
     words.into_iter().map(f32::to_bits).collect()
 }
 
-/// State, box and one more number of an object or medium; nothing for an empty box.
-fn record(state: f32, bounds: Option<Aabb>, last: f32) -> [f32; RECORD_WORDS] {
-    let Some(Aabb { lo, hi }) = bounds else { return [0.0; RECORD_WORDS] };
-    [state, lo[0], lo[1], lo[2], hi[0], hi[1], hi[2], last]
+/// State, box and more numbers of an object or medium; nothing for an empty box.
+fn record<const MORE: usize, const WORDS: usize>(
+    state: f32,
+    bounds: Option<Aabb>,
+    more: [f32; MORE],
+) -> [f32; WORDS] {
+    let mut words = [0.0; WORDS];
+    if let Some(Aabb { lo, hi }) = bounds {
+        let all = [state].into_iter().chain(lo).chain(hi).chain(more);
+        words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
+    }
+    words
 }
 
 /// The contents of `vol_output` as a picture.
@@ -275,152 +320,4 @@ pub fn unpack(width: u32, height: u32, words: &[u32]) -> Image {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::frame::{CameraFrame, LightFrame, MediumFrame, ObjectFrame};
-    use crate::ir::text;
-    use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
-    use vol_language::source::Span;
-
-    const NOWHERE: Slot = Slot(0);
-
-    /// Objects and media of constant functions.
-    fn program(objects: usize, media: usize) -> Program {
-        let function = |inputs: u32, outputs: usize| {
-            let body = format!("fn f({inputs}) {{\n%0 = constant 0.5\nreturn{}\n}}", " %0".repeat(outputs));
-            text::parse_function(&body).expect("well-formed text")
-        };
-        let mut module =
-            text::parse_module("frame(1) {\n%0 = input 0\nreturn %0\n}").expect("well-formed text");
-        module.functions = [(3, 1), (3, 3), (3, 10), (3, 9), (2, 1)].map(|(i, o)| function(i, o)).to_vec();
-        let object = Object {
-            name: "ball".to_owned(),
-            distance: FunctionId(0),
-            gradient: FunctionId(1),
-            surface: FunctionId(2),
-            shows_normals: false,
-            extent: Extent::Unbounded,
-            enabled: NOWHERE,
-            span: Span::default(),
-        };
-        let medium = Medium {
-            name: "gas".to_owned(),
-            region: FunctionId(0),
-            interior: FunctionId(3),
-            extinction: FunctionId(1),
-            phase: FunctionId(4),
-            lighting: Lighting::Shadowed,
-            extent: Extent::Unbounded,
-            enabled: NOWHERE,
-            span: Span::default(),
-        };
-        Program {
-            module,
-            params: Vec::new(),
-            curves: Vec::new(),
-            objects: vec![object; objects],
-            media: vec![medium; media],
-            lights: Vec::new(),
-            camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
-            render: Render {
-                size: [4, 4],
-                background: [NOWHERE; 3],
-                ambient: [NOWHERE; 3],
-                duration: NOWHERE,
-                fps: NOWHERE,
-            },
-            fields: Vec::new(),
-            report: Vec::new(),
-        }
-    }
-
-    fn frame(program: &Program) -> Frame {
-        let whole = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
-        let (object, medium) = (&program.objects[1], &program.media[0]);
-        Frame {
-            uniforms: vec![0.0],
-            uniforms_f32: vec![0.0],
-            curves: Vec::new(),
-            curve_tables: Vec::new(),
-            camera: CameraFrame {
-                origin: [1.0, 2.0, 3.0],
-                forward: [4.0, 5.0, 6.0],
-                right: [7.0, 8.0, 9.0],
-                up: [10.0, 11.0, 12.0],
-            },
-            objects: vec![ObjectFrame {
-                index: 1,
-                distance: object.distance,
-                gradient: object.gradient,
-                surface: object.surface,
-                shows_normals: true,
-                bounds: whole,
-                safe_scale: 0.25,
-            }],
-            media: vec![MediumFrame {
-                index: 0,
-                region: medium.region,
-                interior: medium.interior,
-                extinction: medium.extinction,
-                phase: medium.phase,
-                lighting: Lighting::Unshadowed,
-                bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
-            }],
-            lights: vec![LightFrame {
-                distant: true,
-                position: [0.0, 1.0, 0.0],
-                color: [2.0; 3],
-                shadows: true,
-            }],
-            background: [13.0, 14.0, 15.0],
-            ambient: [0.0; 3],
-            bounds: whole,
-        }
-    }
-
-    #[test]
-    fn modules_are_accepted() {
-        for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
-            let text = render_module(&program(objects, media));
-            assert!(text.is_ok_and(|text| text.contains("fn render(")), "{objects} objects, {media} media");
-        }
-    }
-
-    #[test]
-    fn words_stand_where_the_shader_looks() {
-        let program = program(2, 1);
-        let job = Job { size: [40, 30], step: 0.1, shadow_step: 0.2 };
-        let words = frame_words(&program, &frame(&program), &job, [8, 16, 24, 32]);
-        let words: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
-        assert_eq!(words[..8], [8.0, 16.0, 24.0, 32.0, 40.0, 30.0, 0.1, 0.2]);
-        assert_eq!(words[8..24], [1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15., 1.]);
-        let text = glue(&program);
-        let place = |name: &str| -> usize {
-            let line = text.lines().find_map(|line| line.strip_prefix(&format!("const {name}: u32 = ")));
-            line.and_then(|line| line.strip_suffix("u;")?.parse().ok()).expect("a constant of the glue")
-        };
-        assert_eq!(place("AT_OBJECTS"), 24);
-        let (objects, media, lights) = (place("AT_OBJECTS"), place("AT_MEDIA"), place("AT_LIGHTS"));
-        assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
-        let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
-        assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-        assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 0.]);
-        assert_eq!(words[lights..], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0]);
-    }
-
-    #[test]
-    fn empty_boxes_are_nothing() {
-        assert_eq!(padded(&Aabb { lo: [0.0, 1.0, 0.0], hi: [1.0, 0.0, 1.0] }), None);
-        let grown = padded(&Aabb { lo: [0.0; 3], hi: [1.0, 2.0, 4.0] }).expect("not empty");
-        assert!(grown.lo.iter().all(|&x| x < 0.0 && x > -1e-4) && grown.hi[2] > 4.0);
-    }
-
-    #[test]
-    fn depth_without_a_surface_is_infinite() {
-        let words = [1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0_f32];
-        let image = unpack(2, 1, &words.map(f32::to_bits));
-        assert_eq!(image.pixels[0].depth, f32::INFINITY);
-        assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
-        assert_eq!(image.pixels[1].depth, 7.0);
-    }
-}
+mod tests;

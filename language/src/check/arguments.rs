@@ -97,7 +97,7 @@ impl<'a> Checker<'a> {
         let text = |index: usize| args[index].name.map_or("", |name| &name.text);
         let error = match misfit {
             Misfit::Unnamed(i) => {
-                let message = "arguments without a name come before those with one";
+                let message = "arguments without a name must come before those with one";
                 Diagnostic::error("E0215", message, place(i), "this one has no name")
             }
             Misfit::TooMany(i) => {

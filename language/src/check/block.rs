@@ -78,7 +78,7 @@ impl<'a> Checker<'a> {
     fn check_unnamed(&mut self, block: &ast::Block) {
         if let Some(name) = &block.name {
             let keyword = &block.keyword.text;
-            let message = format!("the {keyword} block has no name of its own");
+            let message = format!("a {keyword} block takes no name");
             let error = Diagnostic::error("E0306", message, name.span, "a name stands here");
             self.report(error.with_help(format!("write `{keyword} {{ … }}`")));
         }
@@ -113,7 +113,12 @@ impl<'a> Checker<'a> {
         for key in keys.iter().filter(|key| key.required && !seen.contains_key(key.name)) {
             let message = format!("this {} has no `{}`", kind.keyword(), key.name);
             let error = Diagnostic::error("E0304", message, span, format!("`{}` is missing", key.name));
-            self.report(error.with_help(format!("add `{}: …`, {}", key.name, key.doc)));
+            self.report(error.with_help(format!(
+                "add `{}: {}`, {}",
+                key.name,
+                self.sample(&key.ty).unwrap_or_else(|| "…".to_owned()),
+                key.doc
+            )));
         }
         let name = block.name.as_ref().map_or_else(String::new, |name| name.text.clone());
         let block = hir::Block { kind, name, entries, span };
@@ -128,8 +133,12 @@ impl<'a> Checker<'a> {
             && self.scope.find(word).is_none()
             && !self.globals.contains_key(word.as_str())
         {
-            let error =
-                Diagnostic::error("E0310", "the value of `lighting` is a text", value.span, "not in quotes");
+            let error = Diagnostic::error(
+                "E0310",
+                "the value of `lighting` must be a text",
+                value.span,
+                "not in quotes",
+            );
             self.report(error.with_help(format!("write `lighting: \"{word}\"`")));
             return self.wrong(value.span);
         }
@@ -143,7 +152,8 @@ impl<'a> Checker<'a> {
             Some(near) => format!("did you mean `{near}`"),
             None => format!("the keys are `{}`", known.join("`, `")),
         };
-        let message = format!("a {} has no key `{text}`", kind.keyword());
+        let article = if kind == BlockKind::Object { "an" } else { "a" };
+        let message = format!("{article} {} has no key `{text}`", kind.keyword());
         self.report(Diagnostic::error("E0302", message, entry.key.span, "no such key").with_help(help));
         // The value may have mistakes of its own, unless only its key could say what it is.
         if !self.is_deferred(&entry.value) && !matches!(entry.value.kind, ExprKind::Record(_)) {

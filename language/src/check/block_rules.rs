@@ -47,7 +47,7 @@ impl Checker<'_> {
         if angle > 0.0 && angle < PI {
             return;
         }
-        let message = "the field of view lies between 0deg and 180deg, both excluded";
+        let message = "the field of view must lie between 0deg and 180deg, both excluded";
         let label = format!("this is {}deg", angle.to_degrees());
         let error = Diagnostic::error("E0312", message, self.span(fov), label);
         self.report(error.with_help("write `fov: 40deg`"));
@@ -88,7 +88,7 @@ impl Checker<'_> {
         if let Some((from, value)) = self.entry_constant(block, "from")
             && is_zero(value)
         {
-            let message = "the direction towards a light is not zero";
+            let message = "the direction towards a light must not be zero";
             let error = Diagnostic::error("E0309", message, self.span(from), "this is zero");
             self.report(error.with_help("write `from: (0, 1, 0)` for light from above"));
         }
@@ -103,7 +103,7 @@ impl Checker<'_> {
         let (message, label) = match &self.scene.expr(value).kind {
             ExprKind::String(text) if LIGHTINGS.contains(&text.as_str()) => return,
             ExprKind::String(text) => (format!("there is no lighting `{text}`"), "no such lighting"),
-            _ => ("the value of `lighting` is written out".to_owned(), "not a plain text"),
+            _ => ("the value of `lighting` must be one of three texts".to_owned(), "not a plain text"),
         };
         let error = Diagnostic::error("E0310", message, self.span(entry), label);
         self.report(error.with_help("write `\"none\"`, `\"unshadowed\"` or `\"shadowed\"`"));
@@ -121,7 +121,7 @@ impl Checker<'_> {
                 format!("this is {width} by {height}")
             }
         };
-        let message = "the size is two constant whole numbers from 1 to 16384";
+        let message = "the size must be two constant whole numbers from 1 to 16384";
         let error = Diagnostic::error("E0311", message, self.span(size), label);
         self.report(error.with_help("write `size: (960, 540)`"));
     }
@@ -130,7 +130,7 @@ impl Checker<'_> {
         if let Some((value, [number, ..])) = self.entry_constant(block, key)
             && !fits(number)
         {
-            let message = format!("`{key}` is {range}");
+            let message = format!("`{key}` must be {range}");
             let error = Diagnostic::error("E0314", message, self.span(value), format!("this is {number}"));
             let example = if key == "fps" { "fps: 30" } else { "duration: 10s" };
             self.report(error.with_help(format!("write `{example}`")));

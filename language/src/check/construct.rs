@@ -87,8 +87,10 @@ impl<'a> Checker<'a> {
         };
         if let Some(&part) = parts.iter().find(|&&part| self.ty(part).is_vector()) {
             let found = a(self.ty(part));
-            let message = format!("the components of `(…)` are numbers, found {found}");
+            let message = format!("the components of `(…)` must be numbers, found {found}");
             let error = Diagnostic::error("E0205", message, self.span(part), format!("this is {found}"));
+            let count: usize = parts.iter().map(|&part| self.ty(part).components().unwrap_or(1)).sum();
+            let ty = if count <= 4 { format!("vec{count}") } else { ty.to_string() };
             self.report(error.with_help(format!("write `{ty}(…)`, which takes vectors as parts")));
             return self.wrong(span);
         }

@@ -212,7 +212,7 @@ impl<'a> Checker<'a> {
         for &id in &ids {
             let ty = self.ty(id).clone();
             let Some(joined) = join(&element, &ty) else {
-                let message = format!("the elements of a list have one type, not {element} and {ty}");
+                let message = format!("the elements of a list must have one type, not {element} and {ty}");
                 let error = Diagnostic::error("E0219", message, self.span(id), format!("this is {}", a(&ty)));
                 let error = error.with_label(self.span(first), format!("this is {}", a(&element)));
                 self.report(error.with_help(self.example(&element)));
@@ -281,10 +281,13 @@ impl<'a> Checker<'a> {
             Type::List(element) => (Over::List(list), *element),
             Type::Error => (Over::List(list), Type::Error),
             ty => {
-                let message = format!("a comprehension walks a range or a list, not {}", a(&ty));
+                let message = format!("`for … in` walks a range or a list, not {}", a(&ty));
                 let error = Diagnostic::error("E0231", message, range.span, format!("this is {}", a(&ty)));
                 let text = self.source_text(list).unwrap_or_else(|| "12".to_owned());
-                self.report(error.with_help(format!("write `0..{text}`")));
+                self.report(error.with_help(match ty {
+                    Type::Int | Type::Float => format!("write `0..{text}`"),
+                    _ => "write a range, such as `0..8`, or a list, such as `[1, 2, 3]`".to_owned(),
+                }));
                 (Over::List(list), Type::Error)
             }
         }
@@ -296,7 +299,7 @@ impl<'a> Checker<'a> {
         let (yes, no) = (self.infer(yes), self.infer(no));
         let (yes_ty, no_ty) = (self.ty(yes).clone(), self.ty(no).clone());
         let Some(ty) = join(&yes_ty, &no_ty) else {
-            let message = format!("both branches of an `if` have one type, not {yes_ty} and {no_ty}");
+            let message = format!("both branches of an `if` must have one type, not {yes_ty} and {no_ty}");
             let error = Diagnostic::error("E0219", message, self.span(no), format!("this is {}", a(&no_ty)));
             let error = error.with_label(self.span(yes), format!("this is {}", a(&yes_ty)));
             self.report(error.with_help(self.example(&yes_ty)));
@@ -339,7 +342,8 @@ impl<'a> Checker<'a> {
     }
 
     fn stray_range(&mut self, span: Span) -> ExprId {
-        let error = Diagnostic::error("E0221", "a range is no value", span, "range outside a comprehension");
+        let error =
+            Diagnostic::error("E0221", "a range is no value", span, "a range outside `[for … in …: …]`");
         self.report(error.with_help("write a list: `[for i in 0..4: i]`"));
         self.wrong(span)
     }

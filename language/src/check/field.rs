@@ -35,6 +35,8 @@ impl<'a> Checker<'a> {
         let error = Diagnostic::error("E0209", message, name.span, "no such field");
         let help = if self.builtins.contains_key(text) {
             format!("call it: `.{text}(…)`")
+        } else if *ty == Type::Local && components(&Type::Vec3, text).is_some() {
+            format!("write `.local.{text}`, or `.world.{text}`")
         } else if *ty == Type::Local {
             let fields: Vec<&str> = LocalField::ALL.iter().map(|(_, known, _)| *known).collect();
             match self.suggest(text, |_| fields.clone()) {

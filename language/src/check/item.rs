@@ -102,7 +102,7 @@ impl<'a> Checker<'a> {
                 continue;
             }
             let (code, what) = match item.kind {
-                Kind::Let { .. } => ("W0101", "binding"),
+                Kind::Let { .. } => ("W0101", "name"),
                 Kind::Param { .. } => ("W0102", "param"),
                 Kind::Function { .. } => continue,
             };
@@ -136,7 +136,9 @@ impl<'a> Checker<'a> {
         for (i, &(_, span)) in cycle.iter().enumerate().skip(1).take(7) {
             error = error.with_label(span, label(i));
         }
-        let help = if is_function {
+        let help = if let ([_], false) = (cycle, is_function) {
+            &format!("give `{name}` a value that does not use it")
+        } else if is_function {
             "a function cannot call itself; write the steps out, or build a list with `[for i in 0..8: …]`"
         } else {
             "define one of them without the other"

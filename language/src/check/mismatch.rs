@@ -21,7 +21,7 @@ impl<'a> Checker<'a> {
             }
             (Type::Angle, to) if is_number(to) => self.unwanted_angle(id, to, role),
             _ => {
-                let message = format!("expected {}{role}, found {}", a(to), a(&from));
+                let message = format!("expected {}{role}, found {}", wanted(to, &from), a(&from));
                 let error =
                     Diagnostic::error("E0205", message, self.span(id), format!("this is {}", a(&from)));
                 error.with_help(self.mismatch_help(id, &from, to).unwrap_or_else(|| self.example(to)))
@@ -55,11 +55,15 @@ impl<'a> Checker<'a> {
     }
 
     fn mismatch_help(&self, id: ExprId, from: &Type, to: &Type) -> Option<String> {
+        if let (false, Type::Function(function)) = (matches!(from, Type::Function(_)), to) {
+            return self.mismatch_help(id, from, &function.result);
+        }
         let text = self.source_text(id).unwrap_or_else(|| "(…)".to_owned());
         match (from, to) {
             (Type::Float, Type::Int) => Some(match self.constant(id) {
                 Some([value, ..]) if value.fract() == 0.0 => format!("write `{value}`"),
-                Some(_) | None => "write a whole number, without a decimal point".to_owned(),
+                Some([value, ..]) => format!("write a whole number, such as `{}`", value.round()),
+                None => "write a whole number, without a decimal point".to_owned(),
             }),
             (from, Type::Float | Type::Int) if from.is_vector() => {
                 Some(format!("take one component: `{text}.x`"))
@@ -69,6 +73,9 @@ impl<'a> Checker<'a> {
             (Type::Vec2, Type::Vec3) => Some(format!("write `vec3({text}, 0)`")),
             (Type::Vec3 | Type::Color, Type::Vec4) => Some(format!("write `vec4({text}, 0)`")),
             (Type::Local, Type::Vec3) => Some(format!("write `{text}.local`, or `{text}.world`")),
+            (Type::Int | Type::Float, Type::Bool) if self.is_literal(id) => {
+                Some("write `true` or `false`".to_owned())
+            }
             (Type::Int | Type::Float, Type::Bool) => Some(format!("compare it: `{text} > 0`")),
             (Type::Int, Type::String) | (Type::Float, Type::String) => Some(format!("write `\"{text}\"`")),
             (from, Type::List(element)) if from == &**element => Some(format!("write `[{text}]`")),
@@ -77,6 +84,16 @@ impl<'a> Checker<'a> {
             }
             _ => None,
         }
+    }
+}
+
+/// What a place asks for; where a function is expected a plain value of its result does, too.
+fn wanted(to: &Type, from: &Type) -> String {
+    match (to, from) {
+        (Type::Function(function), from) if !matches!(from, Type::Function(_)) => {
+            format!("{} or {}", a(&function.result), a(to))
+        }
+        _ => a(to),
     }
 }
 

@@ -172,7 +172,7 @@ impl<'a> Walker<'a, '_> {
         let (code, what) = match binding.kind {
             None => return,
             Some(Kind::Parameter) => ("W0103", "parameter"),
-            Some(Kind::Let) => ("W0104", "binding"),
+            Some(Kind::Let) => ("W0104", "name"),
         };
         let warning = Diagnostic::warning(
             code,

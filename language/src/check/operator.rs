@@ -101,14 +101,14 @@ fn is_scalar(ty: &Type) -> bool {
 /// What an operator takes, for help lines.
 fn operands(op: BinaryOp) -> &'static str {
     match op {
-        BinaryOp::Or | BinaryOp::And => "both sides are truth values, such as `a > 0 && b > 0`",
-        BinaryOp::Equal | BinaryOp::NotEqual => "both sides are numbers, angles or truth values",
+        BinaryOp::Or | BinaryOp::And => "both sides must be truth values, such as `a > 0 && b > 0`",
+        BinaryOp::Equal | BinaryOp::NotEqual => "both sides must be numbers, angles or truth values",
         BinaryOp::Less | BinaryOp::LessEqual | BinaryOp::Greater | BinaryOp::GreaterEqual => {
-            "both sides are numbers or angles; compare components: `a.x < b.x`"
+            "both sides must be numbers or angles; compare components: `a.x < b.x`"
         }
-        BinaryOp::Union | BinaryOp::Intersection => "both sides are shapes",
+        BinaryOp::Union | BinaryOp::Intersection => "both sides must be shapes",
         BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply | BinaryOp::Divide | BinaryOp::Modulo => {
-            "both sides are numbers, or vectors of one length; take components of the longer: `a.xy`"
+            "both sides must be numbers, or vectors of one length; take components of the longer: `a.xy`"
         }
     }
 }
@@ -171,7 +171,7 @@ impl<'a> Checker<'a> {
     fn operator_help(&self, op: BinaryOp, left: ExprId, right: ExprId) -> Option<String> {
         let (a_ty, b_ty) = (self.ty(left), self.ty(right));
         let both = |ty: Type| *a_ty == ty && *b_ty == ty;
-        let instead = |symbol: &str| Some(format!("write `{symbol}`"));
+        let instead = |symbol: &str| Some(format!("write `a {symbol} b`"));
         if both(Type::Shape) {
             return match op {
                 BinaryOp::Or | BinaryOp::Add => instead("|"),
@@ -192,6 +192,9 @@ impl<'a> Checker<'a> {
         }
         if *a_ty == Type::Angle && counts(b_ty) {
             return Some(self.unit_help(left));
+        }
+        if is_comparison(op) && (*a_ty == Type::Bool || *b_ty == Type::Bool) {
+            return Some("compare twice: `a < b && b < c`".to_owned());
         }
         match (a_ty, b_ty) {
             (Type::Shape, b) | (b, Type::Shape) if is_arithmetic(op) && cost(b, &Type::Vec3).is_some() => {
@@ -221,7 +224,10 @@ impl<'a> Checker<'a> {
             let message = format!("`{symbol}` does not take {}", a(&ty));
             let error = Diagnostic::error("E0208", message, self.span(inner), format!("this is {}", a(&ty)));
             self.report(match (op, ty) {
-                (UnaryOp::Not, Type::Int | Type::Float) => error.with_help("compare it: `x == 0`"),
+                (UnaryOp::Not, Type::Int | Type::Float) => {
+                    let text = self.source_text(inner).unwrap_or_else(|| "(…)".to_owned());
+                    error.with_help(format!("compare it: `{text} == 0`"))
+                }
                 (UnaryOp::Negate, Type::Bool) => error.with_help("write `!`"),
                 (UnaryOp::Not, _) => error.with_help("`!` takes a truth value, such as `!true`"),
                 (UnaryOp::Negate, _) => error.with_help("`-` takes a number, an angle or a vector"),

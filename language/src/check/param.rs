@@ -13,7 +13,8 @@ impl<'a> Checker<'a> {
     pub(super) fn declare_param(&mut self, param: &'a Param, doc: &str) -> ParamId {
         let mut ty = self.written_type(&param.ty);
         if ty != Type::Error && ty.components().is_none() {
-            let message = format!("a param is a number, a vector, a color or a truth value, not {}", a(&ty));
+            let message =
+                format!("a param must be a number, a vector, a color or a truth value, not {}", a(&ty));
             let error = Diagnostic::error("E0230", message, param.ty.span, "cannot be set from outside");
             let help = format!("write `let {} = …`", param.name.text);
             self.report(error.with_help(help));
@@ -99,7 +100,7 @@ impl<'a> Checker<'a> {
                 None
             }
             None => {
-                let message = format!("the value{role} must be known at compile time");
+                let message = format!("the value used{role} must be known at compile time");
                 let error = Diagnostic::error("E0228", message, expr.span, "not a constant");
                 self.report(error.with_help("write numbers and arithmetic of them, such as `2 * pi`"));
                 None

@@ -62,7 +62,7 @@ impl<'a> Checker<'a> {
         let message = format!("the function `{name}` stands where a value is expected");
         let error = Diagnostic::error("E0217", message, span, "not called");
         let form = self.form_of(name).unwrap_or_else(|| format!("{name}(…)"));
-        self.report(error.with_help(format!("call it: `{form}`")));
+        self.report(error.with_help(format!("call it; its form is `{form}`")));
         self.wrong(span)
     }
 

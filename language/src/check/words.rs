@@ -49,6 +49,21 @@ fn parameter(parameter: &Parameter) -> String {
     }
 }
 
+/// A function of so many parameters as it could be written.
+fn lambda(params: &[Type]) -> &'static str {
+    match params {
+        [] => "() => …",
+        [Type::Local] => "q => …",
+        [_] => "x => …",
+        _ => "(x, y) => …",
+    }
+}
+
+/// Whether only functions make values of this type.
+fn is_made(ty: &Type) -> bool {
+    matches!(ty, Type::Shape | Type::Curve | Type::Material | Type::Phase | Type::Local | Type::Error)
+}
+
 /// What a function gives; other types are themselves.
 fn result_of(ty: &Type) -> &Type {
     if let Type::Function(function) = ty { &function.result } else { ty }
@@ -66,7 +81,23 @@ pub(super) fn head(head: &Head<'_>) -> String {
 impl Checker<'_> {
     /// What could be written where a type is expected.
     pub(super) fn example(&self, ty: &Type) -> String {
-        let example = match ty {
+        match (self.sample(ty), ty) {
+            // Where a function is expected a plain value of its result does, too.
+            (Some(sample), Type::Function(function)) => {
+                format!(
+                    "write {}, such as `{sample}`, or a function: `{}`",
+                    a(&function.result),
+                    lambda(&function.params)
+                )
+            }
+            (Some(sample), _) => format!("write {}, such as `{sample}`", a(ty)),
+            (None, _) => format!("write {} here", a(ty)),
+        }
+    }
+
+    /// A value of a type as it could be written.
+    pub(super) fn sample(&self, ty: &Type) -> Option<String> {
+        let sample = match ty {
             Type::Bool => "true",
             Type::Int => "3",
             Type::Float => "1.5",
@@ -77,16 +108,22 @@ impl Checker<'_> {
             Type::Color => "#ff8800",
             Type::String => "\"text\"",
             Type::List(_) => "[…]",
-            Type::Function(_) => "x => …",
-            Type::Shape | Type::Curve | Type::Material | Type::Phase | Type::Local | Type::Error => {
-                let known = self.library.signatures.iter().find(|signature| signature.result == *ty);
-                return match known {
-                    Some(known) => format!("write {}, such as `{}`", a(ty), signature(known)),
-                    None => format!("write {} here", a(ty)),
-                };
+            Type::Function(function) => return self.sample(&function.result),
+            Type::Shape | Type::Curve | Type::Material | Type::Phase => {
+                // The first function whose arguments can be written without another function.
+                let simple = |param: &Parameter| !is_made(result_of(&param.ty)) && !param.rest;
+                let known = self
+                    .library
+                    .signatures
+                    .iter()
+                    .find(|signature| signature.result == *ty && signature.params.iter().all(simple))?;
+                let required = known.params.iter().filter(|param| param.default == DefaultValue::Required);
+                let args: Option<Vec<String>> = required.map(|param| self.sample(&param.ty)).collect();
+                return Some(format!("{}({})", known.name, args?.join(", ")));
             }
+            Type::Local | Type::Error => return None,
         };
-        format!("write {}, such as `{example}`", a(ty))
+        Some(sample.to_owned())
     }
 
     /// The source text of a name or number; `None` for longer expressions.

@@ -97,13 +97,15 @@ pub(super) fn block_comment(span: Span) -> Diagnostic {
 }
 
 pub(super) fn bad_character(span: Span, character: char) -> Diagnostic {
-    let message = if character.is_control() || character.is_whitespace() {
+    // Marks that turn the direction of text, or have no width, would garble the line.
+    let is_invisible = matches!(character, '\u{200B}'..='\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}');
+    let message = if character.is_control() || character.is_whitespace() || is_invisible {
         format!("the character U+{:04X} has no meaning here", u32::from(character))
     } else {
         format!("the character `{character}` has no meaning here")
     };
     let help = match character {
-        ';' => "end an entry with a new line or `,`",
+        ';' => "remove it: a new line ends an item, a new line or `,` an entry",
         '^' => "write a power as `pow(a, b)`",
         '?' => "write a choice as `if condition then a else b`",
         '\'' | '‘' | '’' | '“' | '”' => "write strings between two `\"`",
@@ -144,7 +146,7 @@ pub(super) fn unknown_unit(at: Span, number: &str, unit: &str) -> Diagnostic {
         "sec" | "second" | "seconds" => format!("write `{number}s`"),
         "turns" | "rev" => format!("write `{number}turn`"),
         "radians" | "radian" => format!("write `{number}rad`"),
-        _ => format!("units are {UNITS}, as in `45deg`"),
+        _ => format!("write `{number}`, or a number with one of these units, such as `45deg`"),
     };
     let message = format!("{} is not a unit", quoted(unit));
     Diagnostic::error("E0106", message, at, format!("the units are {UNITS}")).with_help(help)
@@ -185,7 +187,7 @@ pub(super) fn not_an_argument_name(at: Span) -> Diagnostic {
 
 pub(super) fn empty_brackets(at: Span) -> Diagnostic {
     Diagnostic::error("E0102", "expected an expression between `(` and `)`", at, "nothing stands here")
-        .with_help("write a function without parameters as `() => …`")
+        .with_help("write a value between them, or a function without parameters as `() => …`")
 }
 
 pub(super) fn not_a_range(at: Span) -> Diagnostic {
@@ -215,7 +217,15 @@ pub(super) fn unknown_item(at: Span, found: &str, next: Option<&str>) -> Diagnos
     let is_word = found.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let help = match (next, nearest(found, item_words().chain(["import", "style"]))) {
         (Some("="), _) if is_word => format!("write `let {found} = …`"),
+        _ if matches!(found, "function" | "func" | "def") => {
+            "write `fn name(x: float) -> float { … }`".to_owned()
+        }
+        _ if matches!(found, "var" | "const" | "float") => "write `let name = …`".to_owned(),
+        _ if found.starts_with('#') => "begin a comment with `//`".to_owned(),
         (_, Some(word)) => format!("did you mean `{word}`?"),
+        (Some("("), None) if is_word => {
+            format!("write `object name {{ shape: {found}(…) }}`, or `let name = {found}(…)`")
+        }
         _ => format!("items begin with {known}"),
     };
     let message = format!("{} does not begin an item", quoted(found));

@@ -7,15 +7,21 @@
 //! order at hard walls, at the ray's origin and at its end. Parts between two outside nodes are
 //! lost: what is thinner than a step may be missed.
 //!
+//! The region of a medium is evaluated only at nodes within a step of one of its cells: all others
+//! are outside, and so are their neighbours, so no weight asks for their distances.
+//!
 //! Twin: `compiler/src/wgsl/render/comb.wgsl`.
 
-use super::camera::{Ray, slab};
+use super::camera::{FAR, Ray, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Integrator, Medium};
-use crate::real::{Real, add, splat, sub};
+use crate::real::{Real, Vec3, add, splat, sub};
 
 /// Most nodes of one ray: a medium without bounds ends after so many.
 pub(crate) const MAX_NODES: i32 = 16_384;
+
+/// Points that are compared with a cell in one loop.
+const BLOCK: usize = 64;
 
 /// Nodes `first..=last` of a comb; none if `first > last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +139,30 @@ impl<F: Fields> Integrator<'_, F> {
         Combs { step, ends, ranges, whole }
     }
 
+    /// Signed distances of one medium's region; [`FAR`] where neither the point nor one within a step
+    /// of it is inside.
+    fn region(&mut self, medium: usize, points: &Points<F::Real>, step: F::Real) -> Vec<F::Real> {
+        let medium = &self.scene.media[medium];
+        if medium.cells.is_empty() {
+            self.stats.region_evaluations += points.len() as u64;
+            let [region] = self.fields.sample(medium.region, points);
+            return region;
+        }
+        // Evaluate what is within a step of a cell.
+        let reach = F::Real::from_f32(1.01) * step;
+        let mut near = Vec::with_capacity(points.len());
+        for start in (0..points.len()).step_by(BLOCK) {
+            let found = near_cells(&medium.cells, reach, points, start);
+            near.extend((start..points.len()).zip(found).filter(|(_, near)| *near).map(|(index, _)| index));
+        }
+        let chosen = near.iter().map(|&index| points.get(index)).collect();
+        let [found] = self.fields.sample(medium.region, &chosen);
+        self.stats.region_evaluations += near.len() as u64;
+        let mut region = vec![F::Real::from_f32(FAR); points.len()];
+        near.into_iter().zip(found).for_each(|(index, found)| region[index] = found);
+        region
+    }
+
     /// The nodes inside one medium among the next `batches.nodes` of each active ray.
     pub(crate) fn inside(
         &mut self,
@@ -154,8 +184,7 @@ impl<F: Fields> Integrator<'_, F> {
                 nodes.for_each(|node| points.push(rays[cursor.ray].at(node_distance(node, combs.step))));
             }
         }
-        let [region] = self.fields.sample(self.scene.media[medium].region, &points);
-        self.stats.region_evaluations += region.len() as u64;
+        let region = self.region(medium, &points, combs.step);
         // Keep those inside, with the length that each stands for.
         let mut inside = Inside { slots: Vec::new(), weights: Vec::new(), points: Points::new() };
         for (which, first, last, offset) in runs {
@@ -182,6 +211,25 @@ impl<F: Fields> Integrator<'_, F> {
         }
         inside
     }
+}
+
+/// Which of the points from `start` on are in a cell grown by `reach`.
+#[inline(never)]
+fn near_cells<R: Real>(cells: &[[Vec3<R>; 2]], reach: R, points: &Points<R>, start: usize) -> [bool; BLOCK] {
+    let mut place = [[R::ZERO; BLOCK]; 3];
+    let [x, y, z] = &mut place;
+    let block = start..points.len().min(start + BLOCK);
+    for (index, ((x, y), z)) in block.zip(x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut())) {
+        [*x, *y, *z] = points.get(index);
+    }
+    let mut near = [false; BLOCK];
+    for &[lo, hi] in cells {
+        let (lo, hi) = (sub(lo, splat(reach)), add(hi, splat(reach)));
+        for (near, ((&x, &y), &z)) in near.iter_mut().zip(x.iter().zip(y.iter()).zip(z.iter())) {
+            *near |= (lo[0] <= x) & (x <= hi[0]) & (lo[1] <= y) & (y <= hi[1]) & (lo[2] <= z) & (z <= hi[2]);
+        }
+    }
+    near
 }
 
 #[cfg(test)]

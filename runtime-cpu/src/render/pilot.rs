@@ -1,5 +1,10 @@
 //! Chooses the distance between samples of media: renders a few rays, halves the step until the
-//! picture stops changing.
+//! picture stops changing, then takes a step between the last two.
+//!
+//! The change that half a step makes goes like a power of the step. Two estimates tell which, and so
+//! at which step the change would be [`AIM`] of what is allowed. The power is held between [`LEAST_POWER`]
+//! and [`GREATEST_POWER`] and the step between the last one that failed and its half: what is
+//! noise in the estimates cannot lead far away.
 //!
 //! One step for the whole picture (algorithms.md §5.1): the difference between two steps on one
 //! ray says little about that ray's error, but its rms over many rays is a safe estimate.
@@ -10,6 +15,7 @@ use super::fields::{Batch, Fields};
 use super::film::Radiance;
 use super::scene::{Batches, Integrator, Scene};
 use crate::interp::Tapes;
+use crate::math::fun::{exp2, log2};
 use rayon::prelude::*;
 use vol_compiler::frame::{Aabb, Frame, Job};
 use vol_compiler::program::Program;
@@ -38,6 +44,15 @@ const GROWTH: u64 = 4;
 /// (algorithms.md §5.2).
 const SHADOW_RATIO: f32 = 2.0;
 
+/// Part of the allowed error that an interpolated step is meant to have.
+const AIM: f32 = 0.8;
+
+/// Least power of the step that the error may go with: that of density with jumps.
+const LEAST_POWER: f32 = 1.0;
+
+/// Greatest power: 2 for smooth density, and somewhat more where the noise begins to be resolved.
+const GREATEST_POWER: f32 = 3.0;
+
 /// What the pilot found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepChoice {
@@ -46,11 +61,11 @@ pub struct StepChoice {
     /// For [`Job::shadow_step`].
     pub shadow_step: f32,
     /// Root mean square over the pilot's rays of the difference that half this step makes to the
-    /// colour, over the root mean square of the colour.
+    /// colour, over the root mean square of the colour: measured at steps about this one.
     pub estimate: f32,
 }
 
-/// Largest step of which half would change the picture by at most `max_error` (relative, rms), as
+/// A large step of which half would change the picture by at most `max_error` (relative, rms), as
 /// far as a limited number of samples can tell; see [`StepChoice::estimate`].
 ///
 /// Without media: step 1, nothing done. The result depends on the arguments alone.
@@ -67,20 +82,36 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     };
     let mut step = first_step(frame);
     let (mut coarse, _) = expose(step);
+    let mut before = None;
     let mut halvings = 0;
     loop {
         let (fine, stats) = expose(0.5 * step);
         let estimate = difference(&coarse, &fine);
         halvings += 1;
         let spent = stats.medium_samples + stats.shadow_samples + stats.region_evaluations;
-        // The last pair of steps that was compared is the one that the estimate is about.
         if estimate <= max_error || halvings == MAX_HALVINGS || GROWTH * spent > BUDGET {
-            let step = if estimate <= max_error { step } else { 0.5 * step };
+            let (step, estimate) = between(step, estimate, before, max_error);
             return StepChoice { step, shadow_step: SHADOW_RATIO * step, estimate };
         }
+        before = Some(estimate);
         step *= 0.5;
         coarse = fine;
     }
+}
+
+/// The step to take, and the estimate there, given the last step with its estimate and the estimate
+/// of twice that step, which failed.
+fn between(step: f32, estimate: f32, before: Option<f32>, max_error: f32) -> (f32, f32) {
+    let passed = estimate <= max_error;
+    let growth = before.filter(|_| estimate > 0.0).map(|before| log2(before / estimate));
+    let Some(growth) = growth.filter(|growth| growth.is_finite()) else {
+        return (if passed { step } else { 0.5 * step }, estimate);
+    };
+    let power = growth.clamp(LEAST_POWER, GREATEST_POWER);
+    // From a step that passed up to its double, else down to its half.
+    let (least, most) = if passed { (1.0, 2.0) } else { (0.5, 1.0) };
+    let ratio = exp2(log2(AIM * max_error / estimate) / power).clamp(least, most);
+    (ratio * step, exp2(power * log2(ratio)) * estimate)
 }
 
 /// A fraction of the diagonal of the box around the media, or around all if that is infinite.
@@ -133,4 +164,37 @@ fn difference(coarse: &[Radiance<f32>], fine: &[Radiance<f32>]) -> f32 {
         }
     }
     if changed > 0.0 { (changed / whole.max(f64::MIN_POSITIVE)).sqrt() as f32 } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_is_met() {
+        for power in [1.0_f32, 1.7, 2.0, 3.0] {
+            let law = |step: f32| 0.01 * step.powf(power);
+            for max_error in [0.011, 0.015, 0.019] {
+                // 1 passes, 2 fails.
+                let (step, estimate) = between(1.0, law(1.0), Some(law(2.0)), max_error);
+                let aim = (AIM * max_error).max(0.01);
+                assert!((law(step) / aim - 1.0).abs() < 1e-4, "{power} {max_error} {step}");
+                assert!((estimate / law(step) - 1.0).abs() < 1e-4 && estimate <= max_error);
+            }
+        }
+    }
+
+    #[test]
+    fn steps_stay_between_the_last_two() {
+        // Passed by far, or with estimates that say nothing.
+        assert!(between(1.0, 1e-4, Some(1.1e-2), 1e-2).0 <= 2.0);
+        assert_eq!(between(1.0, 9.9e-3, Some(1.1e-2), 1e-2), (1.0, 9.9e-3));
+        assert_eq!(between(1.0, 0.0, Some(1.1e-2), 1e-2), (1.0, 0.0));
+        assert_eq!(between(1.0, 1e-3, None, 1e-2), (1.0, 1e-3));
+        // Failed: at most as far as the half.
+        assert_eq!(between(1.0, 1.0, Some(1.0), 1e-2), (0.5, 0.5));
+        assert_eq!(between(1.0, 1.0, None, 1e-2), (0.5, 1.0));
+        let (step, estimate) = between(1.0, 1.1e-2, Some(4.4e-2), 1e-2);
+        assert!(step > 0.8 && step < 0.9 && (estimate - 8e-3).abs() < 1e-5, "{step} {estimate}");
+    }
 }

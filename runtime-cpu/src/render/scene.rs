@@ -5,7 +5,7 @@ use crate::real::{Real, Vec3, length, vector};
 use vol_compiler::frame::{Frame, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Lighting;
-use vol_compiler::wgsl::render::padded;
+use vol_compiler::wgsl::render::{padded, padded_cells};
 
 /// What the integrator knows of a frame.
 #[derive(Debug)]
@@ -63,6 +63,8 @@ pub(crate) struct Medium<R> {
     pub(crate) lighting: Lighting,
     pub(crate) lo: Vec3<R>,
     pub(crate) hi: Vec3<R>,
+    /// Smallest and largest corners of its cells; none if it may be anywhere in its box.
+    pub(crate) cells: Vec<[Vec3<R>; 2]>,
 }
 
 /// See [`vol_compiler::frame::LightFrame`].
@@ -124,6 +126,7 @@ fn solids<R: Real>(frame: &Frame) -> Vec<Solid<R>> {
 fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
     let medium = |medium: &vol_compiler::frame::MediumFrame| {
         let bounds = padded(&medium.bounds)?;
+        let cells = padded_cells(medium);
         Some(Medium {
             region: medium.region,
             interior: medium.interior,
@@ -132,6 +135,7 @@ fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
             lighting: medium.lighting,
             lo: vector(bounds.lo),
             hi: vector(bounds.hi),
+            cells: cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect(),
         })
     };
     frame.media.iter().filter_map(medium).collect()

@@ -69,9 +69,29 @@ fn wall(ray: Ray, medium: u32, range: vec2i, node: i32, step_size: f32, end: f32
     let t = node_distance(node, step_size);
     let some = range.x <= range.y;
     if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
-        region = medium_region(medium, ray_at(ray, t));
+        let point = ray_at(ray, t);
+        // What is not within a step of a cell is outside, and so are its neighbours.
+        if (near_cell(medium, point, step_size)) {
+            region = medium_region(medium, point);
+        }
     }
     return max(region, max(t - end, -t));
+}
+
+// Whether a point is within a step of a cell of a medium; a medium without cells may be anywhere.
+fn near_cell(medium: u32, point: vec3f, step_size: f32) -> bool {
+    let at = medium_word(medium);
+    let count = u32(vol_input[at + 8u]);
+    let reach = vec3f(1.01 * step_size);
+    var near = count == 0u;
+    var cell = u32(vol_input[at + 7u]);
+    for (var index = 0u; index < count; index++) {
+        let lo = word3(cell) - reach;
+        let hi = word3(cell + 3u) + reach;
+        near = near | contains(lo, hi, point);
+        cell += CELL_WORDS;
+    }
+    return near;
 }
 
 // Part of the interval between two neighbouring nodes that the first stands for, given the signed

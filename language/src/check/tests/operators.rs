@@ -102,8 +102,8 @@ fn vectors_of_different_length_are_refused() {
 fn shapes_are_not_added() {
     let source = "let s = sphere(1) let a = s + s";
     assert_eq!(errors(source), ["E0208 `s`: this is a shape"]);
-    assert_eq!(help(source), "write `|`");
-    assert_eq!(help("let a = true | false"), "write `||`");
+    assert_eq!(help(source), "write `a | b`");
+    assert_eq!(help("let a = true | false"), "write `a || b`");
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn wrong_operand_is_reported_once() {
 
 #[test]
 fn shape_and_number_are_refused() {
-    assert_eq!(help("let a = sphere(1) | 3"), "both sides are shapes");
+    assert_eq!(help("let a = sphere(1) | 3"), "both sides must be shapes");
     assert_eq!(
         help("let a = sphere(1) * 3"),
         "move, turn or scale a shape by calling a function on it: `shape.f(…)`"

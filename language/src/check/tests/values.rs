@@ -20,7 +20,7 @@ fn unknown_name_shows_the_nearest() {
 fn function_name_is_no_value() {
     let source = "let a = sphere";
     assert_eq!(errors(source), ["E0217 `sphere`: not called"]);
-    assert_eq!(help(source), "call it: `sphere(radius: float) -> shape`");
+    assert_eq!(help(source), "call it; its form is `sphere(radius: float) -> shape`");
 }
 
 #[test]

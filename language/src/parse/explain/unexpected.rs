@@ -118,6 +118,39 @@ impl Place<'_> {
         self.open_bracket(index).is_some_and(|open| self.word_at(open + 1) == "let")
     }
 
+    /// Whether the place lies directly in `{ … }`.
+    fn is_in_braces(&self, index: usize) -> bool {
+        self.open_bracket(index).is_some_and(|open| self.word_at(open) == "{")
+    }
+
+    /// Whether the place lies directly in `[ … ]`.
+    fn is_in_list(&self, index: usize) -> bool {
+        self.open_bracket(index).is_some_and(|open| self.word_at(open) == "[")
+    }
+
+    /// Whether `(name` or `, name` stands directly before the place, inside round brackets.
+    fn names_argument(&self, index: usize) -> bool {
+        index >= 2
+            && self.tokens[index - 1].kind == Kind::Word
+            && matches!(self.word_at(index - 2), "(" | ",")
+            && self.open_bracket(index).is_some_and(|open| self.word_at(open) == "(")
+    }
+
+    fn is_number(&self, index: usize) -> bool {
+        self.tokens.get(index).is_some_and(|token| token.kind == Kind::Number)
+    }
+
+    /// Whether a value, not an operator, stands at token `index`.
+    fn begins_value(&self, index: usize) -> bool {
+        self.tokens
+            .get(index)
+            .is_some_and(|token| matches!(token.kind, Kind::Number | Kind::Text | Kind::Color | Kind::Word))
+    }
+
+    fn word_before(&self, index: usize) -> &str {
+        index.checked_sub(1).map_or("", |before| self.word_at(before))
+    }
+
     fn word_at(&self, index: usize) -> &str {
         self.tokens.get(index).map_or("", |token| token.text(self.text))
     }
@@ -131,7 +164,13 @@ impl Place<'_> {
         let help = match found {
             "(" if starts_line => "write `(` on the line above to call, or `,` before it",
             "-" if starts_line => "write `-` at the end of the line above to subtract",
-            "=" if wants("`:`") => "write `:` instead of `=`",
+            "=" if wants("`:`") && self.word_at(0) != "param" => "write `:` instead of `=`",
+            "=" if self.names_argument(index) => {
+                "write `:` after the name of an argument, or `==` to compare"
+            }
+            "=" if self.is_in_block(index) => {
+                "a name keeps its value: write `let` and another name, or `==` to compare"
+            }
             "=" if self.expected.contains(&OPERATOR) => "write `==` to compare",
             "," if wants("an expression") && self.is_in_block(index) => "separate `let`s by new lines",
             ":" if wants("`=`") && self.word_at(0) == "let" => {
@@ -140,6 +179,14 @@ impl Place<'_> {
             ":" if wants("`=`") => "write `name: type = value`",
             "=" if wants("`->`") => "write the type of the result: `-> float`",
             ".." => "write a range only after `in`: `[for i in 0..10: …]`",
+            "[" if self.expected.contains(&OPERATOR) => {
+                "there is no index: write the parts of a vector as `v.x`, walk a list with `[for x in list: …]`"
+            }
+            "*" if wants("an expression") && self.word_before(index) == "*" => "write a power as `pow(a, b)`",
+            "," if wants("an expression") => "remove the `,`, or write a value before it",
+            _ if is_number && found.starts_with('.') && self.is_number(index.wrapping_sub(1)) => {
+                "a number has one `.`"
+            }
             _ if is_number && found.starts_with('.') => {
                 "write the parts of a vector as `v.x`, `v.y` and `v.z`"
             }
@@ -149,12 +196,30 @@ impl Place<'_> {
             {
                 return Some(format!("`{found}` is a word of the language: choose another name"));
             }
+            _ if self.word_before(index) == "return" && self.is_in_braces(index) => {
+                "remove `return`: the last expression is the result"
+            }
+            "for" if wants("an expression") => "write a list in brackets: `[for i in 0..8: …]`",
+            "in" if wants("an expression") => "`in` is a word of the language: choose another name",
             "{" if wants("`->`") => "write the type of the result: `-> float {`",
             _ if wants("`else`") => "write both branches: `if condition then a else b`",
             _ if wants("`then`") => "write `if condition then a else b`",
             _ if wants("`=`") && self.word_at(0) == "param" => "write `param name: float = 1 in 0..2`",
             _ if wants("`:`") && self.word_at(0) == "param" => "write `param name: float = 1 in 0..2`",
             _ if wants("`:`") && self.unit == "entry" => "write an entry as `key: value`",
+            _ if wants("`=`") && self.word_at(0) == "let" => "write `let name = value`",
+            _ if wants("`in`") => "write `[for i in 0..8: …]`",
+            _ if wants("`:`") && self.is_in_list(index) => {
+                "write `:` before what each element is: `[for i in 0..8: …]`"
+            }
+            _ if wants("`:`") && self.word_at(0) == "fn" => "write the type of the parameter: `name: float`",
+            ")" | "]" | "}" if wants("an expression") => {
+                return Some(format!("write a value before the `{found}`"));
+            }
+            "" if wants("an expression") => {
+                return Some(format!("write a value after the `{}`", self.word_before(index)));
+            }
+            _ if wants("`,`") && self.begins_value(index) => "write `,` before it, or an operator",
             _ if index == 0 && is_number => "write a vector in brackets: `(1, 2, 3)`",
             _ => return None,
         };

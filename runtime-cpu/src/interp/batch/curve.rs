@@ -5,7 +5,7 @@
 //! search vectorise.
 
 use super::{LANES, Operands, Out};
-use crate::math::curve::{self, Search};
+use crate::math::curve::{self, CurvePoint, Search};
 use vol_compiler::curve::Piece;
 use vol_compiler::ops::MAX_RESULTS;
 
@@ -60,6 +60,36 @@ impl Searches {
     }
 }
 
+/// Curves of at most so many pieces are described on every piece in loops that vectorise; on longer
+/// ones that is more work than each lane's own piece.
+const FEW: usize = 4;
+
+/// Describes the foot in the first `n` lanes on one piece and keeps it where that piece won. Out of
+/// line and with arrays of its own for the same reason as [`Searches::visit`].
+#[inline(never)]
+fn describe(
+    searches: &Searches,
+    n: usize,
+    piece: Piece,
+    index: u32,
+    found: &mut [[f32; LANES]; MAX_RESULTS],
+) {
+    for lane in 0..n.min(LANES) {
+        let values = values(&curve::describe(searches.point(lane), &piece, searches.t[lane]));
+        let won = searches.piece[lane] == index;
+        for (found, value) in found.iter_mut().zip(values) {
+            found[lane] = if won { value } else { found[lane] };
+        }
+    }
+}
+
+/// In the order of the operation's results.
+#[inline(always)]
+fn values(found: &CurvePoint) -> [f32; MAX_RESULTS] {
+    let CurvePoint { t, arc_length, curve_length, x, y, distance, overshoot, stretch } = *found;
+    [t, arc_length, curve_length, x, y, distance, overshoot, stretch]
+}
+
 /// [`curve::closest`] in each lane.
 pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usize {
     let n = x[0].len().min(LANES);
@@ -69,14 +99,22 @@ pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usiz
         searches.visit(n, *piece, index);
     }
     // Describe the foot on the winner.
+    if (1..=FEW).contains(&pieces.len()) {
+        let mut found = [[0.0; LANES]; MAX_RESULTS];
+        for (index, piece) in (0u32..).zip(pieces) {
+            describe(&searches, n, *piece, index, &mut found);
+        }
+        for (out, found) in out.iter_mut().zip(&found) {
+            out.0[..n].copy_from_slice(&found[..n]);
+        }
+        return MAX_RESULTS;
+    }
     for lane in 0..n {
         let found = match pieces.get(searches.piece[lane] as usize) {
             Some(piece) => curve::describe(searches.point(lane), piece, searches.t[lane]),
             None => curve::closest(searches.point(lane), &[]),
         };
-        let along = [found.t, found.arc_length, found.curve_length];
-        let across = [found.x, found.y, found.distance, found.overshoot, found.stretch];
-        for (out, value) in out.iter_mut().zip(along.into_iter().chain(across)) {
+        for (out, value) in out.iter_mut().zip(values(&found)) {
             out.0[lane] = value;
         }
     }

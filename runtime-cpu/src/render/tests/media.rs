@@ -155,6 +155,42 @@ fn boxes_only_skip() {
     assert_eq!(world.render(20, 0.11), tight);
 }
 
+/// The boxes of a grid over a box, without those that a ball inside does not meet.
+fn cells(bounds: Aabb, parts: u8) -> Vec<Aabb> {
+    let edge = |axis: usize, i: u8| {
+        bounds.lo[axis] + (bounds.hi[axis] - bounds.lo[axis]) * f32::from(i) / f32::from(parts)
+    };
+    let middle = [0, 1, 2].map(|axis| 0.5 * (bounds.lo[axis] + bounds.hi[axis]));
+    let radius = 0.5 * (bounds.hi[0] - bounds.lo[0]);
+    let mut cells = Vec::new();
+    for index in 0..u32::from(parts).pow(3) {
+        let place = [0, 1, 2].map(|axis| (index / u32::from(parts).pow(axis) % u32::from(parts)) as u8);
+        let lo = [0, 1, 2].map(|axis| edge(axis, place[axis]));
+        let hi = [0, 1, 2].map(|axis| edge(axis, place[axis] + 1));
+        let apart = [0, 1, 2].map(|i| (lo[i] - middle[i]).max(middle[i] - hi[i]).max(0.0));
+        if apart.iter().map(|x| x * x).sum::<f32>() <= radius * radius {
+            cells.push(Aabb { lo, hi });
+        }
+    }
+    cells
+}
+
+#[test]
+fn cells_only_skip() {
+    let mut world = mixed();
+    let ball = world.frame.media[1].bounds;
+    for step in [0.03, 0.11, 0.4] {
+        world.frame.media[1].cells = vec![ball];
+        let whole = world.render_counted(20, step);
+        world.frame.media[1].cells = cells(ball, 7);
+        assert!(world.frame.media[1].cells.len() < 300);
+        let skipping = world.render_counted(20, step);
+        assert_eq!(skipping.0, whole.0, "step {step}");
+        assert!(skipping.1.region_evaluations < whole.1.region_evaluations, "step {step}");
+        assert_eq!(skipping.1.medium_samples, whole.1.medium_samples, "step {step}");
+    }
+}
+
 #[test]
 fn gas_without_bounds_ends() {
     let mut world = slab(0.0, 0.0, Lighting::None);

@@ -1,6 +1,6 @@
 //! Scenes built by hand.
 
-use super::super::{Batches, Watch, render_batches};
+use super::super::{Batches, Stats, Watch, render_batches};
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{
     Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel,
@@ -238,8 +238,9 @@ impl World {
         let [region, interior] = [self.function(gas.region), self.function(gas.interior)];
         let [extinction, phase] = [self.function(gas.extinction), self.function(gas.phase)];
         let index = self.program.media.len();
-        let (lighting, bounds) = (gas.lighting, gas.bounds);
-        self.frame.media.push(MediumFrame { index, region, interior, extinction, phase, lighting, bounds });
+        let (lighting, bounds, cells) = (gas.lighting, gas.bounds, vec![gas.bounds]);
+        let frame = MediumFrame { index, region, interior, extinction, phase, lighting, bounds, cells };
+        self.frame.media.push(frame);
         self.program.media.push(Medium {
             name: "gas".to_owned(),
             region,
@@ -261,6 +262,13 @@ impl World {
     /// Renders a square picture.
     pub(super) fn render(&self, size: u32, step: f32) -> Image {
         self.render_with(&Job { size: [size, size], step, shadow_step: step }, Batches::DEFAULT)
+    }
+
+    /// Renders a square picture and counts.
+    pub(super) fn render_counted(&self, size: u32, step: f32) -> (Image, Stats) {
+        let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
+        let job = Job { size: [size, size], step, shadow_step: step };
+        render_batches(&self.program, &self.frame, &job, Batches::DEFAULT, &watch).expect("not cancelled")
     }
 
     /// Renders with batches of other sizes.

@@ -1,0 +1,159 @@
+use super::*;
+use crate::frame::{CameraFrame, LightFrame, ObjectFrame};
+use crate::ir::text;
+use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
+use vol_language::source::Span;
+
+const NOWHERE: Slot = Slot(0);
+
+/// Objects and media of constant functions.
+fn program(objects: usize, media: usize) -> Program {
+    let function = |inputs: u32, outputs: usize| {
+        let body = format!("fn f({inputs}) {{\n%0 = constant 0.5\nreturn{}\n}}", " %0".repeat(outputs));
+        text::parse_function(&body).expect("well-formed text")
+    };
+    let mut module = text::parse_module("frame(1) {\n%0 = input 0\nreturn %0\n}").expect("well-formed text");
+    module.functions = [(3, 1), (3, 3), (3, 10), (3, 9), (2, 1)].map(|(i, o)| function(i, o)).to_vec();
+    let object = Object {
+        name: "ball".to_owned(),
+        distance: FunctionId(0),
+        gradient: FunctionId(1),
+        surface: FunctionId(2),
+        shows_normals: false,
+        extent: Extent::Unbounded,
+        enabled: NOWHERE,
+        span: Span::default(),
+    };
+    let medium = Medium {
+        name: "gas".to_owned(),
+        region: FunctionId(0),
+        interior: FunctionId(3),
+        extinction: FunctionId(1),
+        phase: FunctionId(4),
+        lighting: Lighting::Shadowed,
+        extent: Extent::Unbounded,
+        enabled: NOWHERE,
+        span: Span::default(),
+    };
+    Program {
+        module,
+        params: Vec::new(),
+        curves: Vec::new(),
+        objects: vec![object; objects],
+        media: vec![medium; media],
+        lights: Vec::new(),
+        camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
+        render: Render {
+            size: [4, 4],
+            background: [NOWHERE; 3],
+            ambient: [NOWHERE; 3],
+            duration: NOWHERE,
+            fps: NOWHERE,
+        },
+        fields: Vec::new(),
+        report: Vec::new(),
+    }
+}
+
+fn frame(program: &Program) -> Frame {
+    let whole = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
+    let (object, medium) = (&program.objects[1], &program.media[0]);
+    Frame {
+        uniforms: vec![0.0],
+        uniforms_f32: vec![0.0],
+        curves: Vec::new(),
+        curve_tables: Vec::new(),
+        camera: CameraFrame {
+            origin: [1.0, 2.0, 3.0],
+            forward: [4.0, 5.0, 6.0],
+            right: [7.0, 8.0, 9.0],
+            up: [10.0, 11.0, 12.0],
+        },
+        objects: vec![ObjectFrame {
+            index: 1,
+            distance: object.distance,
+            gradient: object.gradient,
+            surface: object.surface,
+            shows_normals: true,
+            bounds: whole,
+            safe_scale: 0.25,
+        }],
+        media: vec![MediumFrame {
+            index: 0,
+            region: medium.region,
+            interior: medium.interior,
+            extinction: medium.extinction,
+            phase: medium.phase,
+            lighting: Lighting::Unshadowed,
+            bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
+            cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }; 2],
+        }],
+        lights: vec![LightFrame { distant: true, position: [0.0, 1.0, 0.0], color: [2.0; 3], shadows: true }],
+        background: [13.0, 14.0, 15.0],
+        ambient: [0.0; 3],
+        bounds: whole,
+    }
+}
+
+#[test]
+fn modules_are_accepted() {
+    for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
+        let text = render_module(&program(objects, media));
+        assert!(text.is_ok_and(|text| text.contains("fn render(")), "{objects} objects, {media} media");
+    }
+}
+
+#[test]
+fn words_stand_where_the_shader_looks() {
+    let program = program(2, 1);
+    let job = Job { size: [40, 30], step: 0.1, shadow_step: 0.2 };
+    let words = frame_words(&program, &frame(&program), &job, [8, 16, 24, 32]);
+    let words: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
+    assert_eq!(words[..8], [8.0, 16.0, 24.0, 32.0, 40.0, 30.0, 0.1, 0.2]);
+    assert_eq!(words[8..24], [1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15., 1.]);
+    let text = glue(&program);
+    let place = |name: &str| -> usize {
+        let line = text.lines().find_map(|line| line.strip_prefix(&format!("const {name}: u32 = ")));
+        line.and_then(|line| line.strip_suffix("u;")?.parse().ok()).expect("a constant of the glue")
+    };
+    assert_eq!(place("AT_OBJECTS"), 24);
+    let (objects, media, lights) = (place("AT_OBJECTS"), place("AT_MEDIA"), place("AT_LIGHTS"));
+    assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
+    let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
+    assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
+    let cells = lights + 8;
+    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., cells as f32, 2.0]);
+    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0]);
+    assert_eq!(words[cells..], [0.0; 12], "two cells");
+}
+
+#[test]
+fn empty_boxes_are_nothing() {
+    assert_eq!(padded(&Aabb { lo: [0.0, 1.0, 0.0], hi: [1.0, 0.0, 1.0] }), None);
+    let grown = padded(&Aabb { lo: [0.0; 3], hi: [1.0, 2.0, 4.0] }).expect("not empty");
+    assert!(grown.lo.iter().all(|&x| x < 0.0 && x > -1e-4) && grown.hi[2] > 4.0);
+}
+
+#[test]
+fn cells_are_used_if_they_say_more_than_the_box() {
+    let program = program(2, 1);
+    let mut medium = frame(&program).media[0].clone();
+    let cell = |lo: f32, hi: f32| Aabb { lo: [lo; 3], hi: [hi; 3] };
+    medium.cells = vec![cell(0.0, 1.0), cell(f32::INFINITY, f32::NEG_INFINITY), cell(2.0, 4.0)];
+    let padded = padded_cells(&medium);
+    assert_eq!(padded.len(), 2, "an empty cell is nothing");
+    assert!(padded[1].lo[0] < 2.0 && padded[1].hi[0] > 4.0 && padded[1].hi[0] < 4.001);
+    medium.cells[0].hi[1] = f32::INFINITY;
+    assert_eq!(padded_cells(&medium), []);
+    medium.cells.truncate(1);
+    assert_eq!(padded_cells(&medium), []);
+}
+
+#[test]
+fn depth_without_a_surface_is_infinite() {
+    let words = [1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0_f32];
+    let image = unpack(2, 1, &words.map(f32::to_bits));
+    assert_eq!(image.pixels[0].depth, f32::INFINITY);
+    assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
+    assert_eq!(image.pixels[1].depth, 7.0);
+}

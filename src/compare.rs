@@ -11,8 +11,9 @@ pub use points::scatter;
 
 use rayon::prelude::*;
 use vol_compiler::error_bound::{self, Bounded};
-use vol_compiler::frame::{Frame, Image, Pixel};
+use vol_compiler::frame::{Frame, Image, Job, Pixel};
 use vol_compiler::ir::Function;
+use vol_compiler::program::Program;
 
 /// The reference values of a function at points, each with the largest error that a conforming f32
 /// evaluation can have there; as many in a row as the function has outputs.
@@ -119,6 +120,22 @@ pub const EXACT: ImageClass = ImageClass { name: "EXACT", threshold: 0.0, allowe
 /// the examples differ by at most 6e-6; the rest is room for hardware.
 pub const GPU_IMAGE: ImageClass =
     ImageClass { name: "GPU_IMAGE", threshold: 1e-4, allowed_share: 2e-3, hard_cap: 0.1 };
+
+/// f32 against f64 with the same samples: rounding alone. The examples differ by at most 4e-6, but
+/// where a ray grazes a surface; pictures for this are small, so one such ray is a larger share.
+pub const PRECISION: ImageClass =
+    ImageClass { name: "PRECISION", threshold: 1e-4, allowed_share: 2e-2, hard_cap: 0.1 };
+
+/// The picture that exact arithmetic would give for the same samples, by the f64 reference; slow.
+#[must_use]
+pub fn reference_picture(program: &Program, frame: &Frame, job: &Job) -> Image {
+    let pixel = |values: &[f64; 7]| {
+        let [r, g, b, red, green, blue, depth] = values.map(|value| value as f32);
+        Pixel { color: [r, g, b], transmittance: [red, green, blue], depth }
+    };
+    let pixels = vol_runtime_cpu::render_reference(program, frame, job).iter().map(pixel).collect();
+    Image { width: job.size[0], height: job.size[1], pixels }
+}
 
 /// How two pictures differ.
 #[derive(Clone, Copy, Debug, PartialEq)]

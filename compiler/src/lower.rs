@@ -77,7 +77,7 @@ pub(crate) struct Lowerer<'a> {
     curves: Vec<Curve>,
     /// Values of the bindings in scope.
     environment: Environment,
-    lets: Vec<Option<Value>>,
+    lets: Vec<Option<Lowered<Value>>>,
     /// First frame input of each param.
     param_inputs: Vec<u32>,
     frame_inputs: u32,

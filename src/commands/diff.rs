@@ -3,7 +3,7 @@
 use std::io::{self, Write as _};
 
 use vol::backend::{Choice, Device};
-use vol::compare::{self, FieldReport, GPU_IMAGE, ImageReport};
+use vol::compare::{self, FieldReport, GPU_IMAGE, ImageReport, PRECISION};
 use vol::failure::Failure;
 use vol_compiler::frame::{Frame, Job};
 use vol_compiler::program::{Field, Program};
@@ -14,6 +14,12 @@ use crate::cli;
 
 /// Longest side of the compared pictures where none is asked for, in pixels.
 const LONGEST_SIDE: u32 = 256;
+
+/// Longest side of the pictures compared with the reference, in pixels.
+const REFERENCE_SIDE: u32 = 32;
+
+/// Their samples are this many times farther apart than the pilot's.
+const REFERENCE_COARSENESS: f32 = 4.0;
 
 /// Error allowed in the compared pictures; both backends use the steps chosen for it.
 const MAX_ERROR: f32 = 1e-2;
@@ -40,12 +46,17 @@ pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
     if rows.len() > 1 {
         print_table(&rows)?;
     }
-    let picture = compare_pictures(program, &frame, size, [&cpu, &gpu])?;
-    failed += usize::from(!picture.passes());
-    print_table(&[PICTURE_HEADINGS.map(str::to_owned).to_vec(), picture_row(&picture, size)])?;
+    let pictures = compare_pictures(&prepared, size, [&cpu, &gpu])?;
+    failed += pictures.iter().filter(|picture| !picture.report.passes()).count();
+    let mut rows = vec![PICTURE_HEADINGS.map(str::to_owned).to_vec()];
+    rows.extend(pictures.iter().map(PictureRow::row));
+    print_table(&rows)?;
     match failed {
         0 => Ok(()),
-        _ => Err(Failure::content(format!("{failed} of {} comparisons failed", program.fields.len() + 1))),
+        _ => {
+            let all = program.fields.len() + pictures.len();
+            Err(Failure::content(format!("{failed} of {all} comparisons failed")))
+        }
     }
 }
 
@@ -105,31 +116,56 @@ fn compare_field(
     })
 }
 
+/// The pictures of both backends against each other, and small ones against the reference.
 fn compare_pictures(
-    program: &Program,
-    frame: &Frame,
+    prepared: &Prepared,
     size: [u32; 2],
     [cpu, gpu]: [&Device; 2],
-) -> Result<ImageReport, Failure> {
-    let choice = vol_runtime_cpu::choose_step(program, frame, size, MAX_ERROR);
+) -> Result<Vec<PictureRow>, Failure> {
+    let program = &prepared.session.program;
+    let render = |device: &Device, frame: &Frame, job: &Job| {
+        Ok::<_, Failure>(device.prepare(program)?.render(frame, job, &|_| {}, &CANCELLED)?.image)
+    };
+    let frame = prepared.frame(size)?;
+    let choice = vol_runtime_cpu::choose_step(program, &frame, size, MAX_ERROR);
     let job = Job { size, step: choice.step, shadow_step: choice.shadow_step };
-    let on_cpu = cpu.prepare(program)?.render(frame, &job, &|_| {}, &CANCELLED)?;
-    let on_gpu = gpu.prepare(program)?.render(frame, &job, &|_| {}, &CANCELLED)?;
-    Ok(compare::images(&on_cpu.image, &on_gpu.image, GPU_IMAGE))
+    let pair = compare::images(&render(cpu, &frame, &job)?, &render(gpu, &frame, &job)?, GPU_IMAGE);
+    // Rounding shows with few samples as well as with many, and the reference is slow.
+    let small = at_most(size, REFERENCE_SIDE);
+    let frame = prepared.frame(small)?;
+    let coarse = REFERENCE_COARSENESS;
+    let job = Job { size: small, step: coarse * choice.step, shadow_step: coarse * choice.shadow_step };
+    let reference = compare::reference_picture(program, &frame, &job);
+    let against =
+        |device| Ok::<_, Failure>(compare::images(&render(device, &frame, &job)?, &reference, PRECISION));
+    Ok(vec![
+        PictureRow { what: "cpu-gpu", size, report: pair },
+        PictureRow { what: "cpu-ref", size: small, report: against(cpu)? },
+        PictureRow { what: "gpu-ref", size: small, report: against(gpu)? },
+    ])
 }
 
-const PICTURE_HEADINGS: [&str; 6] = ["picture", "pixels", "max |cpu-gpu|", "at", "over tolerance", ""];
+/// Two pictures of one scene.
+struct PictureRow {
+    what: &'static str,
+    size: [u32; 2],
+    report: ImageReport,
+}
 
-fn picture_row(report: &ImageReport, [width, height]: [u32; 2]) -> Vec<String> {
-    let [column, row] = report.worst_pixel;
-    vec![
-        format!("{width}x{height}"),
-        report.pixels.to_string(),
-        format!("{:.1e}", report.max),
-        format!("{column},{row}"),
-        format!("{:.3} %", 100.0 * report.share_over),
-        verdict(report.passes()),
-    ]
+const PICTURE_HEADINGS: [&str; 6] = ["picture", "size", "max difference", "at", "over tolerance", ""];
+
+impl PictureRow {
+    fn row(&self) -> Vec<String> {
+        let ([width, height], [column, row]) = (self.size, self.report.worst_pixel);
+        vec![
+            self.what.to_owned(),
+            format!("{width}x{height}"),
+            format!("{:.1e}", self.report.max),
+            format!("{column},{row}"),
+            format!("{:.3} %", 100.0 * self.report.share_over),
+            verdict(self.report.passes()),
+        ]
+    }
 }
 
 fn verdict(passes: bool) -> String {

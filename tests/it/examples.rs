@@ -5,7 +5,7 @@ use crate::support::{compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::compare;
-use vol_compiler::frame::{Image, Job, Pixel};
+use vol_compiler::frame::{Image, Job};
 
 /// A small picture.
 const SIZE: [u32; 2] = [48, 27];
@@ -15,10 +15,6 @@ const REFERENCE_SIZE: [u32; 2] = [16, 9];
 
 /// A coarse comb: agreement does not need accuracy.
 const JOB: Job = Job { size: SIZE, step: 0.05, shadow_step: 0.1 };
-
-/// f32 against f64, the same comb: rounding alone. The examples differ by at most 4e-6.
-const PRECISION: compare::ImageClass =
-    compare::ImageClass { name: "PRECISION", threshold: 2e-5, allowed_share: 0.03, hard_cap: 0.02 };
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -66,13 +62,8 @@ fn reference(path: &Path) -> Result<(), Failed> {
     let frame = frame(&program, 0.4, REFERENCE_SIZE)?;
     let job = Job { size: REFERENCE_SIZE, ..JOB };
     let actual = render(&program, &frame, &job, 2)?;
-    let expected = vol_runtime_cpu::render_reference(&program, &frame, &job);
-    let pixel = |values: &[f64; 7]| {
-        let [r, g, b, tr, tg, tb, depth] = values.map(|value| value as f32);
-        Pixel { color: [r, g, b], transmittance: [tr, tg, tb], depth }
-    };
-    let expected = Image { pixels: expected.iter().map(pixel).collect(), ..actual.clone() };
-    let report = compare::images(&actual, &expected, PRECISION);
+    let expected = compare::reference_picture(&program, &frame, &job);
+    let report = compare::images(&actual, &expected, compare::PRECISION);
     ensure(report.passes(), || format!("{report:?}"))
 }
 

@@ -4,7 +4,7 @@ use super::{Builtin, call, math, optional, required};
 use crate::ir::ValueId;
 use crate::ir::graph::Rate;
 use crate::lower::optics::{Material, Phase};
-use crate::lower::shape::Shape;
+use crate::lower::shape::{Kind, Shape};
 use crate::lower::tube::{self, CurveValue};
 use crate::lower::value::Value;
 use crate::lower::{Lowered, Lowerer, depends_on_position};
@@ -21,60 +21,63 @@ pub(super) fn builtins() -> Vec<Builtin> {
         .collect()
 }
 
-fn shape(shape: Shape) -> Lowered<Value> {
-    Ok(Value::Shape(Rc::new(shape)))
-}
-
 fn primitives() -> Vec<Builtin> {
     let float = |name| required(name, Type::Float);
     let vec3 = |name| required(name, Type::Vec3);
     vec![
-        call("sphere", vec![float("radius")], Type::Shape, "ball at the origin; exact", |_, _, a| {
-            shape(Shape::Sphere { radius: a[0].scalar() })
+        call("sphere", vec![float("radius")], Type::Shape, "ball at the origin; exact", |_, span, a| {
+            Shape::value(Kind::Sphere { radius: a[0].scalar() }, span)
         }),
         call(
             "box",
             vec![vec3("half")],
             Type::Shape,
             "box at the origin from its half extents; exact",
-            |_, _, a| shape(Shape::Box { half: a[0].vec3() }),
+            |_, span, a| Shape::value(Kind::Box { half: a[0].vec3() }, span),
         ),
         call(
             "cylinder",
             vec![float("radius"), float("half_height")],
             Type::Shape,
             "capped cylinder around the y axis, from -half_height to half_height; exact",
-            |_, _, a| shape(Shape::Cylinder { radius: a[0].scalar(), half_height: a[1].scalar() }),
+            |_, span, a| {
+                Shape::value(Kind::Cylinder { radius: a[0].scalar(), half_height: a[1].scalar() }, span)
+            },
         ),
         call(
             "infinite_cylinder",
             vec![float("radius")],
             Type::Shape,
             "cylinder around the y axis; exact",
-            |_, _, a| shape(Shape::InfiniteCylinder { radius: a[0].scalar() }),
+            |_, span, a| Shape::value(Kind::InfiniteCylinder { radius: a[0].scalar() }, span),
         ),
         call(
             "torus",
             vec![float("major"), float("minor")],
             Type::Shape,
             "ring around the y axis: a circle of radius major, thickened by minor; exact",
-            |_, _, a| shape(Shape::Torus { major: a[0].scalar(), minor: a[1].scalar() }),
+            |_, span, a| Shape::value(Kind::Torus { major: a[0].scalar(), minor: a[1].scalar() }, span),
         ),
         call(
             "capsule",
             vec![vec3("a"), vec3("b"), float("radius")],
             Type::Shape,
             "all points within radius of the segment from a to b; exact",
-            |_, _, a| shape(Shape::Capsule { a: a[0].vec3(), b: a[1].vec3(), radius: a[2].scalar() }),
+            |_, span, a| {
+                Shape::value(Kind::Capsule { a: a[0].vec3(), b: a[1].vec3(), radius: a[2].scalar() }, span)
+            },
         ),
         call(
             "plane",
             vec![vec3("normal"), optional("offset", Type::Float, 0.0)],
             Type::Shape,
             "half space below the plane normal . p = offset, the normal made unit length; exact",
-            |lowerer, _, a| {
+            |lowerer, span, a| {
                 let normal = math::normalize(&mut lowerer.graph, a[0].numbers());
-                shape(Shape::Plane { normal: Value::Numbers(normal).vec3(), offset: a[1].scalar() })
+                Shape::value(
+                    Kind::Plane { normal: Value::Numbers(normal).vec3(), offset: a[1].scalar() },
+                    span,
+                )
             },
         ),
         tube_builtin(),
@@ -96,7 +99,7 @@ fn tube_builtin() -> Builtin {
     call("tube", params, Type::Shape, doc, |lowerer, span, a| {
         let stretch = lowerer.compile_time(a[3].scalar(), "`stretch`", span)? != 0.0;
         let (radius, twist) = (a[1].function(), a[2].function());
-        shape(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?)
+        Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, span)
     })
 }
 
@@ -117,9 +120,9 @@ fn combinations() -> Vec<Builtin> {
             vec![shapes(), smooth()],
             Type::Shape,
             "all points of any shape; smooth is the width of the blend",
-            |lowerer, _, a| {
+            |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[1]);
-                shape(Shape::Union { shapes: shape_list(&a[0]), smooth })
+                Shape::value(Kind::Union { shapes: shape_list(&a[0]), smooth }, span)
             },
         ),
         call(
@@ -127,9 +130,9 @@ fn combinations() -> Vec<Builtin> {
             vec![shapes(), smooth()],
             Type::Shape,
             "the points common to all shapes; smooth is the width of the blend",
-            |lowerer, _, a| {
+            |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[1]);
-                shape(Shape::Intersection { shapes: shape_list(&a[0]), smooth })
+                Shape::value(Kind::Intersection { shapes: shape_list(&a[0]), smooth }, span)
             },
         ),
         call(
@@ -137,9 +140,9 @@ fn combinations() -> Vec<Builtin> {
             pair,
             Type::Shape,
             "the points of the first shape that are not in the second; smooth is the width of the blend",
-            |lowerer, _, a| {
+            |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[2]);
-                shape(Shape::Difference { from: a[0].shape(), what: a[1].shape(), smooth })
+                Shape::value(Kind::Difference { from: a[0].shape(), what: a[1].shape(), smooth }, span)
             },
         ),
     ]
@@ -168,36 +171,38 @@ fn transforms() -> Vec<Builtin> {
             vec![child(), required("offset", Type::Vec3)],
             Type::Shape,
             "moved by offset",
-            |_, _, a| shape(Shape::Translated { child: a[0].shape(), offset: a[1].vec3() }),
+            |_, span, a| Shape::value(Kind::Translated { child: a[0].shape(), offset: a[1].vec3() }, span),
         ),
-        turn("rotate_x", "turned about the x axis, y towards z", |l, _, a| rotated(l, a, 0)),
-        turn("rotate_y", "turned about the y axis, z towards x", |l, _, a| rotated(l, a, 1)),
-        turn("rotate_z", "turned about the z axis, x towards y", |l, _, a| rotated(l, a, 2)),
+        turn("rotate_x", "turned about the x axis, y towards z", |l, span, a| rotated(l, a, 0, span)),
+        turn("rotate_y", "turned about the y axis, z towards x", |l, span, a| rotated(l, a, 1, span)),
+        turn("rotate_z", "turned about the z axis, x towards y", |l, span, a| rotated(l, a, 2, span)),
         call(
             "scale",
             vec![child(), required("factor", Type::Float)],
             Type::Shape,
             "scaled about the origin",
-            |_, _, a| shape(Shape::Scaled { child: a[0].shape(), factor: a[1].scalar() }),
+            |_, span, a| Shape::value(Kind::Scaled { child: a[0].shape(), factor: a[1].scalar() }, span),
         ),
         call(
             "round",
             vec![child(), required("radius", Type::Float)],
             Type::Shape,
             "grown by radius on all sides, which rounds the edges",
-            |_, _, a| shape(Shape::Rounded { child: a[0].shape(), radius: a[1].scalar() }),
+            |_, span, a| Shape::value(Kind::Rounded { child: a[0].shape(), radius: a[1].scalar() }, span),
         ),
         call(
             "displace",
             vec![child(), required("amount", of_position)],
             Type::Shape,
             "the surface moved inwards by an amount that depends on the position; marched safely by the amount's own slope",
-            |_, span, a| shape(Shape::Displaced { child: a[0].shape(), amount: a[1].function(), span }),
+            |_, span, a| {
+                Shape::value(Kind::Displaced { child: a[0].shape(), amount: a[1].function(), span }, span)
+            },
         ),
     ]
 }
 
-fn rotated(lowerer: &mut Lowerer<'_>, args: &[Value], axis: usize) -> Lowered<Value> {
+fn rotated(lowerer: &mut Lowerer<'_>, args: &[Value], axis: usize, span: Span) -> Lowered<Value> {
     let graph = &mut lowerer.graph;
     let angle = args[1].scalar();
     let (sine, cosine) = (graph.apply(Op::Sin, &[angle]), graph.apply(Op::Cos, &[angle]));
@@ -211,7 +216,7 @@ fn rotated(lowerer: &mut Lowerer<'_>, args: &[Value], axis: usize) -> Lowered<Va
     columns[next][last] = sine;
     columns[last][next] = minus;
     columns[last][last] = cosine;
-    shape(Shape::Rotated { child: args[0].shape(), columns })
+    Shape::value(Kind::Rotated { child: args[0].shape(), columns }, span)
 }
 
 fn curves() -> Vec<Builtin> {

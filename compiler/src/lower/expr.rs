@@ -100,13 +100,14 @@ impl Lowerer<'_> {
         Value::Numbers(vec![self.graph.number(number)])
     }
 
-    fn let_value(&mut self, index: usize) -> Lowered<Value> {
-        if let Some(value) = &self.lets[index] {
-            return Ok(value.clone());
+    /// The value of a top-level `let`, or its message, computed once.
+    pub(crate) fn let_value(&mut self, index: usize) -> Lowered<Value> {
+        if let Some(known) = &self.lets[index] {
+            return known.clone();
         }
-        let value = self.expr(self.hir.lets[index].value)?;
+        let value = self.expr(self.hir.lets[index].value);
         self.lets[index] = Some(value.clone());
-        Ok(value)
+        value
     }
 
     fn param(&mut self, index: usize) -> Value {
@@ -149,20 +150,21 @@ impl Lowerer<'_> {
             spine.push((*op, *b));
             left = *a;
         }
+        let span = hir.expr(id).span;
         let mut value = self.expr(left)?;
         for (op, right) in spine.into_iter().rev() {
             let right = self.expr(right)?;
-            value = self.binary(op, &value, &right);
+            value = self.binary(op, &value, &right, span)?;
         }
         Ok(value)
     }
 
-    fn binary(&mut self, op: BinaryOp, a: &Value, b: &Value) -> Value {
+    fn binary(&mut self, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Lowered<Value> {
         if let (Value::Shape(a), Value::Shape(b)) = (a, b) {
-            return super::shape::operator(op, Rc::clone(a), Rc::clone(b));
+            return super::shape::operator(op, Rc::clone(a), Rc::clone(b), span);
         }
         let (a, b) = (a.numbers(), b.numbers());
-        Value::Numbers(a.iter().zip(b).map(|(&a, &b)| self.scalar_operator(op, a, b)).collect())
+        Ok(Value::Numbers(a.iter().zip(b).map(|(&a, &b)| self.scalar_operator(op, a, b)).collect()))
     }
 
     fn scalar_operator(&mut self, op: BinaryOp, a: ValueId, b: ValueId) -> ValueId {

@@ -33,6 +33,11 @@ const KEY_LIGHT: ([f64; 3], f64) = ([-0.5, 0.8, 0.6], 3.0);
 /// Lowers all blocks; blocks with errors are reported and left out. `None` if nothing is left.
 pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
     let hir = lowerer.hir;
+    // In order, so that a chain of `let`s does not nest.
+    for index in 0..hir.lets.len() {
+        let value = lowerer.let_value(index);
+        keep(lowerer, value);
+    }
     let render_block = hir.blocks.iter().find(|b| b.kind == BlockKind::Render);
     let render = render(lowerer, render_block);
     let ambient = ambient(lowerer, render_block);

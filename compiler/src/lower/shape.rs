@@ -16,9 +16,25 @@ use vol_language::diag::Diagnostic;
 use vol_language::hir::LocalField;
 use vol_language::source::Span;
 
-/// A solid as the scene builds it. Lengths are in scene units, negative distance is inside.
-#[derive(Clone, Debug)]
-pub(crate) enum Shape {
+/// Most parts of one solid, those used several times counted each time: `let b = a | a` doubles.
+const MAX_PARTS: u32 = 100_000;
+
+/// Deepest nesting of operators and transforms: what walks over a solid recurses so deep.
+const MAX_LEVELS: u32 = 500;
+
+/// A solid as the scene builds it.
+#[derive(Debug)]
+pub(crate) struct Shape {
+    kind: Kind,
+    /// Primitives and operators, shared ones counted each time.
+    parts: u32,
+    /// Nesting.
+    levels: u32,
+}
+
+/// The kinds of solids. Lengths are in scene units, negative distance is inside.
+#[derive(Debug)]
+pub(crate) enum Kind {
     /// Exact.
     Sphere { radius: ValueId },
     /// Exact; half extents along the axes.
@@ -54,71 +70,82 @@ pub(crate) enum Shape {
 }
 
 /// `a | b`, `a & b`, `a - b`
-pub(crate) fn operator(op: BinaryOp, a: Rc<Shape>, b: Rc<Shape>) -> Value {
-    let shape = match op {
-        BinaryOp::Union => Shape::Union { shapes: vec![a, b], smooth: None },
-        BinaryOp::Intersection => Shape::Intersection { shapes: vec![a, b], smooth: None },
-        BinaryOp::Subtract => Shape::Difference { from: a, what: b, smooth: None },
+pub(crate) fn operator(op: BinaryOp, a: Rc<Shape>, b: Rc<Shape>, span: Span) -> Lowered<Value> {
+    let kind = match op {
+        BinaryOp::Union => Kind::Union { shapes: vec![a, b], smooth: None },
+        BinaryOp::Intersection => Kind::Intersection { shapes: vec![a, b], smooth: None },
+        BinaryOp::Subtract => Kind::Difference { from: a, what: b, smooth: None },
         other => unreachable!("shapes have no operator {}", other.symbol()),
     };
-    Value::Shape(Rc::new(shape))
+    Shape::value(kind, span)
 }
 
 impl Shape {
+    /// A value of a kind, within the limits on its size.
+    pub(crate) fn value(kind: Kind, span: Span) -> Lowered<Value> {
+        let children = kind.children();
+        let parts = children.iter().fold(1u32, |sum, child| sum.saturating_add(child.parts));
+        let levels = 1 + children.iter().map(|child| child.levels).max().unwrap_or(0);
+        if parts > MAX_PARTS || levels > MAX_LEVELS {
+            return Err(too_large(parts, span));
+        }
+        Ok(Value::Shape(Rc::new(Self { kind, parts, levels })))
+    }
+
     /// Signed distance (or the bound that the variant states) at a point.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
         let graph = &mut lowerer.graph;
-        Ok(match self {
-            Self::Sphere { radius } => {
+        Ok(match &self.kind {
+            Kind::Sphere { radius } => {
                 let length = graph.length(&p);
                 graph.sub(length, *radius)
             }
-            Self::Box { half } => box_distance(graph, p, *half),
-            Self::Cylinder { radius, half_height } => {
+            Kind::Box { half } => box_distance(graph, p, *half),
+            Kind::Cylinder { radius, half_height } => {
                 let radial = graph.length(&[p[0], p[2]]);
                 let radial = graph.sub(radial, *radius);
                 let axial = graph.apply(Op::Abs, &[p[1]]);
                 let axial = graph.sub(axial, *half_height);
                 corner_distance(graph, &[radial, axial])
             }
-            Self::InfiniteCylinder { radius } => {
+            Kind::InfiniteCylinder { radius } => {
                 let radial = graph.length(&[p[0], p[2]]);
                 graph.sub(radial, *radius)
             }
-            Self::Torus { major, minor } => {
+            Kind::Torus { major, minor } => {
                 let radial = graph.length(&[p[0], p[2]]);
                 let radial = graph.sub(radial, *major);
                 let tube = graph.length(&[radial, p[1]]);
                 graph.sub(tube, *minor)
             }
-            Self::Capsule { a, b, radius } => capsule_distance(graph, p, *a, *b, *radius),
-            Self::Plane { normal, offset } => {
+            Kind::Capsule { a, b, radius } => capsule_distance(graph, p, *a, *b, *radius),
+            Kind::Plane { normal, offset } => {
                 let height = graph.dot(normal, &p);
                 graph.sub(height, *offset)
             }
-            Self::Tube(tube) => tube.distance(lowerer, p)?,
-            Self::Union { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_min)?,
-            Self::Intersection { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_max)?,
-            Self::Difference { from, what, smooth } => {
+            Kind::Tube(tube) => tube.distance(lowerer, p)?,
+            Kind::Union { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_min)?,
+            Kind::Intersection { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_max)?,
+            Kind::Difference { from, what, smooth } => {
                 let from = from.distance(lowerer, p)?;
                 let what = what.distance(lowerer, p)?;
                 let outside = lowerer.graph.apply(Op::Neg, &[what]);
                 smooth_max(&mut lowerer.graph, from, outside, *smooth)
             }
-            Self::Translated { child, .. } | Self::Rotated { child, .. } => {
+            Kind::Translated { child, .. } | Kind::Rotated { child, .. } => {
                 let inner = self.child_position(graph, p);
                 child.distance(lowerer, inner)?
             }
-            Self::Scaled { child, factor } => {
+            Kind::Scaled { child, factor } => {
                 let inner = self.child_position(graph, p);
                 let distance = child.distance(lowerer, inner)?;
                 lowerer.graph.mul(distance, *factor)
             }
-            Self::Rounded { child, radius } => {
+            Kind::Rounded { child, radius } => {
                 let distance = child.distance(lowerer, p)?;
                 lowerer.graph.sub(distance, *radius)
             }
-            Self::Displaced { child, amount, .. } => {
+            Kind::Displaced { child, amount, .. } => {
                 let distance = child.distance(lowerer, p)?;
                 let amount = lowerer.call(amount, &[Value::Numbers(p.to_vec())])?.scalar();
                 lowerer.graph.add(distance, amount)
@@ -128,28 +155,40 @@ impl Shape {
 
     /// A point in the coordinates of the child of a transform.
     fn child_position(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
-        match self {
-            Self::Translated { offset, .. } => [0, 1, 2].map(|i| graph.sub(p[i], offset[i])),
-            Self::Rotated { columns, .. } => columns.map(|column| graph.dot(&column, &p)),
-            Self::Scaled { factor, .. } => p.map(|v| graph.div(v, *factor)),
-            _ => p,
+        match &self.kind {
+            Kind::Translated { offset, .. } => [0, 1, 2].map(|i| graph.sub(p[i], offset[i])),
+            Kind::Rotated { columns, .. } => columns.map(|column| graph.dot(&column, &p)),
+            Kind::Scaled { factor, .. } => p.map(|v| graph.div(v, *factor)),
+            Kind::Sphere { .. }
+            | Kind::Box { .. }
+            | Kind::Cylinder { .. }
+            | Kind::InfiniteCylinder { .. }
+            | Kind::Torus { .. }
+            | Kind::Capsule { .. }
+            | Kind::Plane { .. }
+            | Kind::Tube(_)
+            | Kind::Union { .. }
+            | Kind::Intersection { .. }
+            | Kind::Difference { .. }
+            | Kind::Rounded { .. }
+            | Kind::Displaced { .. } => p,
         }
     }
 
     /// Where the shape is and how steep its distance.
     pub(crate) fn extent(&self, lowerer: &mut Lowerer<'_>, span: Span) -> Lowered<Extent> {
         let zero = lowerer.graph.number(0.0);
-        match self {
-            Self::Sphere { radius } => centred_box(lowerer, [*radius; 3], span),
-            Self::Box { half } => centred_box(lowerer, *half, span),
-            Self::Cylinder { radius, half_height } => {
+        match &self.kind {
+            Kind::Sphere { radius } => centred_box(lowerer, [*radius; 3], span),
+            Kind::Box { half } => centred_box(lowerer, *half, span),
+            Kind::Cylinder { radius, half_height } => {
                 centred_box(lowerer, [*radius, *half_height, *radius], span)
             }
-            Self::Torus { major, minor } => {
+            Kind::Torus { major, minor } => {
                 let wide = lowerer.graph.add(*major, *minor);
                 centred_box(lowerer, [wide, *minor, wide], span)
             }
-            Self::Capsule { a, b, radius } => {
+            Kind::Capsule { a, b, radius } => {
                 let graph = &mut lowerer.graph;
                 let lo = [0, 1, 2].map(|i| graph.min(a[i], b[i]));
                 let hi = [0, 1, 2].map(|i| graph.max(a[i], b[i]));
@@ -158,9 +197,9 @@ impl Shape {
                 let radius = lowerer.slot(*radius, "a radius", span)?;
                 Ok(Extent::Grown(Box::new(Extent::Box { lo, hi }), radius))
             }
-            Self::InfiniteCylinder { .. } | Self::Plane { .. } => Ok(Extent::Unbounded),
-            Self::Tube(tube) => tube.extent(lowerer),
-            Self::Union { shapes, smooth } => {
+            Kind::InfiniteCylinder { .. } | Kind::Plane { .. } => Ok(Extent::Unbounded),
+            Kind::Tube(tube) => tube.extent(lowerer),
+            Kind::Union { shapes, smooth } => {
                 let union = Extent::Union(extents(lowerer, shapes, span)?);
                 // The blend bulges out by at most a quarter of its width.
                 let quarter = lowerer.graph.number(0.25);
@@ -168,25 +207,25 @@ impl Shape {
                 let bulge = lowerer.slot(bulge, "the width of a blend", span)?;
                 Ok(if smooth.is_some() { Extent::Grown(Box::new(union), bulge) } else { union })
             }
-            Self::Intersection { shapes, .. } => Ok(Extent::Intersection(extents(lowerer, shapes, span)?)),
-            Self::Difference { from, what, .. } => {
+            Kind::Intersection { shapes, .. } => Ok(Extent::Intersection(extents(lowerer, shapes, span)?)),
+            Kind::Difference { from, what, .. } => {
                 let from = from.extent(lowerer, span)?;
                 // What is cut away adds its steepness, not its bounds.
                 let what = Extent::Complement(Box::new(what.extent(lowerer, span)?));
                 Ok(Extent::Intersection(vec![from, what]))
             }
-            Self::Translated { child, offset } => {
+            Kind::Translated { child, offset } => {
                 let one = lowerer.graph.number(1.0);
                 place(lowerer, child, identity(one, zero), *offset, span)
             }
-            Self::Rotated { child, columns } => place(lowerer, child, *columns, [zero; 3], span),
-            Self::Scaled { child, factor } => place(lowerer, child, identity(*factor, zero), [zero; 3], span),
-            Self::Rounded { child, radius } => {
+            Kind::Rotated { child, columns } => place(lowerer, child, *columns, [zero; 3], span),
+            Kind::Scaled { child, factor } => place(lowerer, child, identity(*factor, zero), [zero; 3], span),
+            Kind::Rounded { child, radius } => {
                 let child = child.extent(lowerer, span)?;
                 let radius = lowerer.slot(*radius, "a radius", span)?;
                 Ok(Extent::Grown(Box::new(child), radius))
             }
-            Self::Displaced { child, amount, span } => displaced_extent(lowerer, child, amount, *span),
+            Kind::Displaced { child, amount, span } => displaced_extent(lowerer, child, amount, *span),
         }
     }
 
@@ -202,33 +241,33 @@ impl Shape {
             let distance = self.distance(lowerer, p)?;
             return Ok(vec![lowerer.graph.apply(Op::Neg, &[distance])]);
         }
-        if let Self::Tube(tube) = self {
+        if let Kind::Tube(tube) = &self.kind {
             return tube.local_field(lowerer, p, field);
         }
-        if let Self::Translated { child, .. }
-        | Self::Rotated { child, .. }
-        | Self::Scaled { child, .. }
-        | Self::Rounded { child, .. }
-        | Self::Displaced { child, .. } = self
+        if let Kind::Translated { child, .. }
+        | Kind::Rotated { child, .. }
+        | Kind::Scaled { child, .. }
+        | Kind::Rounded { child, .. }
+        | Kind::Displaced { child, .. } = &self.kind
         {
             let inner = self.child_position(&mut lowerer.graph, p);
             return child.local_field(lowerer, inner, field, span);
         }
         let graph = &mut lowerer.graph;
-        match (field, self) {
+        match (field, &self.kind) {
             (LocalField::Local, _) => Ok(p.to_vec()),
             (LocalField::Stretch, _) => Ok(vec![graph.number(1.0)]),
             (LocalField::Angle, _) => Ok(vec![graph.apply(Op::Atan2, &[p[2], p[0]])]),
-            (LocalField::Radius, Self::Sphere { radius }) => {
+            (LocalField::Radius, Kind::Sphere { radius }) => {
                 let length = graph.length(&p);
                 Ok(vec![graph.div(length, *radius)])
             }
-            (LocalField::Radius, Self::Cylinder { radius, .. } | Self::InfiniteCylinder { radius }) => {
+            (LocalField::Radius, Kind::Cylinder { radius, .. } | Kind::InfiniteCylinder { radius }) => {
                 let radial = graph.length(&[p[0], p[2]]);
                 Ok(vec![graph.div(radial, *radius)])
             }
-            (LocalField::L, Self::Cylinder { half_height, .. }) => Ok(vec![graph.add(p[1], *half_height)]),
-            (LocalField::T, Self::Cylinder { half_height, .. }) => {
+            (LocalField::L, Kind::Cylinder { half_height, .. }) => Ok(vec![graph.add(p[1], *half_height)]),
+            (LocalField::T, Kind::Cylinder { half_height, .. }) => {
                 let along = graph.add(p[1], *half_height);
                 let height = graph.add(*half_height, *half_height);
                 Ok(vec![graph.div(along, height)])
@@ -236,6 +275,43 @@ impl Shape {
             (field, _) => Err(no_such_coordinate(field, span)),
         }
     }
+}
+
+impl Kind {
+    /// The shapes that this one is made of.
+    fn children(&self) -> Vec<&Shape> {
+        match self {
+            Self::Sphere { .. }
+            | Self::Box { .. }
+            | Self::Cylinder { .. }
+            | Self::InfiniteCylinder { .. }
+            | Self::Torus { .. }
+            | Self::Capsule { .. }
+            | Self::Plane { .. }
+            | Self::Tube(_) => Vec::new(),
+            Self::Union { shapes, .. } | Self::Intersection { shapes, .. } => {
+                shapes.iter().map(|shape| &**shape).collect()
+            }
+            Self::Difference { from, what, .. } => vec![from, what],
+            Self::Translated { child, .. }
+            | Self::Rotated { child, .. }
+            | Self::Scaled { child, .. }
+            | Self::Rounded { child, .. }
+            | Self::Displaced { child, .. } => vec![child],
+        }
+    }
+}
+
+fn too_large(parts: u32, span: Span) -> Box<Diagnostic> {
+    let (code, message) = if parts > MAX_PARTS {
+        ("E0401", format!("this shape has more than {MAX_PARTS} parts"))
+    } else {
+        ("E0402", format!("the operators of this shape nest more than {MAX_LEVELS} deep"))
+    };
+    Box::new(
+        Diagnostic::error(code, message, span, "the limit is reached here")
+            .with_help("use fewer copies, or join many shapes by one `union([…])`"),
+    )
 }
 
 fn no_such_coordinate(field: LocalField, span: Span) -> Box<Diagnostic> {

@@ -1,6 +1,6 @@
 //! Tubes: a curve as axis, radius and twist as functions along it (Moinet 2022, section 3).
 
-use super::shape::Shape;
+use super::shape::Kind;
 use super::value::Closure;
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
@@ -52,7 +52,7 @@ pub(crate) fn tube(
     twist: Rc<Closure>,
     stretch: bool,
     span: Span,
-) -> Lowered<Shape> {
+) -> Lowered<Kind> {
     let mut segments = Vec::with_capacity(curve.segments.len());
     for [a, b, c] in &curve.segments {
         let what = "a control point";
@@ -60,7 +60,7 @@ pub(crate) fn tube(
         segments.push([point(lowerer, a)?, point(lowerer, b)?, point(lowerer, c)?]);
     }
     let curve = lowerer.curve(Curve { segments });
-    Ok(Shape::Tube(Tube { curve, radius, twist, stretch }))
+    Ok(Kind::Tube(Tube { curve, radius, twist, stretch }))
 }
 
 impl Tube {

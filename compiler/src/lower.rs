@@ -41,6 +41,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0404", "a choice between shapes, curves or lists depends on a run-time value"),
     ("E0405", "a value must be known at compile time"),
     ("E0406", "a local coordinate that this region does not have"),
+    ("E0407", "a number outside of what a function takes"),
     ("E0408", "a surface without a derivative: a tube as an object"),
     ("E0501", "a displacement is not bounded"),
 ];

@@ -25,9 +25,11 @@ use diag::Diagnostic;
 use library::Library;
 use source::SourceFile;
 
-/// Codes that a lost item causes elsewhere: names that only it defines, and all that is then missing
-/// or unused.
-const FOLLOW_UPS: [&str; 8] = ["E0201", "E0304", "E0308", "E0313", "W0101", "W0102", "W0103", "W0104"];
+/// Codes that a lost item causes elsewhere: names that only it defines, and all that is then missing.
+const FOLLOW_UPS: [&str; 4] = ["E0201", "E0304", "E0308", "E0313"];
+
+/// Warnings about unused names; beside an error they may only say that a use of the name is wrong.
+const UNUSED: [&str; 4] = ["W0101", "W0102", "W0103", "W0104"];
 
 /// Parses and checks one file.
 ///
@@ -43,5 +45,8 @@ pub fn analyse(file: &SourceFile, library: &Library) -> (Option<hir::Scene>, Vec
     diagnostics.extend(found);
     diagnostics.sort_by_key(|d| d.labels.first().map_or(0, |label| label.span.start));
     let failed = diagnostics.iter().any(Diagnostic::is_error);
+    if failed {
+        diagnostics.retain(|diagnostic| !UNUSED.contains(&diagnostic.code));
+    }
     ((!failed).then_some(scene), diagnostics)
 }

@@ -16,7 +16,8 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             return None;
         }
         let mistakes = distance(&typed, &known);
-        (mistakes <= limit).then_some((mistakes, candidate))
+        // A name of which nothing is left is no suggestion.
+        (mistakes <= limit && mistakes < longest).then_some((mistakes, candidate))
     });
     scored.min().map(|(_, candidate)| candidate)
 }

@@ -256,6 +256,26 @@ impl Lowerer<'_> {
         })
     }
 
+    /// Refuses numbers that are known to be less than `least` (or equal, unless `or_equal`). What a
+    /// param or the time sets is not known here.
+    pub(crate) fn at_least(
+        &self,
+        values: &[ValueId],
+        least: f64,
+        or_equal: bool,
+        what: &str,
+        span: Span,
+    ) -> Lowered<()> {
+        let wrong = |number: &f64| if or_equal { *number < least } else { *number <= least };
+        let Some(number) = values.iter().filter_map(|&v| self.graph.constant(v)).find(wrong) else {
+            return Ok(());
+        };
+        let relation = if or_equal { "at least" } else { "more than" };
+        let message = format!("{what} must be {relation} {least}");
+        let diagnostic = Diagnostic::error("E0407", message, span, format!("here it is {number}"));
+        Err(Box::new(diagnostic.with_help("change the number, or leave the shape out with the key `when`")))
+    }
+
     fn user_function(&mut self, index: usize, args: Vec<Value>) -> Lowered<Value> {
         let function = &self.hir.functions[index];
         let params: Vec<LocalId> = function.params.iter().map(|&(local, _)| local).collect();

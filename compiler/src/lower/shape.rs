@@ -92,6 +92,29 @@ impl Shape {
         Ok(Value::Shape(Rc::new(Self { kind, parts, levels })))
     }
 
+    /// Refuses sizes that are known to make no solid.
+    pub(crate) fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
+        let sizes: (&[ValueId], &str) = match &self.kind {
+            Kind::Sphere { radius } | Kind::InfiniteCylinder { radius } | Kind::Capsule { radius, .. } => {
+                (&[*radius], "a radius")
+            }
+            Kind::Box { half } => (half, "a half extent"),
+            Kind::Cylinder { radius, half_height } => (&[*radius, *half_height], "a radius or half height"),
+            Kind::Torus { major, minor } => (&[*major, *minor], "a radius"),
+            Kind::Scaled { factor, .. } => return lowerer.at_least(&[*factor], 0.0, false, "a scale", span),
+            Kind::Plane { .. }
+            | Kind::Tube(_)
+            | Kind::Union { .. }
+            | Kind::Intersection { .. }
+            | Kind::Difference { .. }
+            | Kind::Translated { .. }
+            | Kind::Rotated { .. }
+            | Kind::Rounded { .. }
+            | Kind::Displaced { .. } => return Ok(()),
+        };
+        lowerer.at_least(sizes.0, 0.0, true, sizes.1, span)
+    }
+
     /// Signed distance (or the bound that the variant states) at a point.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
         let graph = &mut lowerer.graph;

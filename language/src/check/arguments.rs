@@ -105,7 +105,14 @@ impl<'a> Checker<'a> {
                 let most = slots.len();
                 let noun = if most == 1 { "argument" } else { "arguments" };
                 let message = format!("`{callee}` takes {most} {noun}, found {given}");
-                Diagnostic::error("E0212", message, place(i), "one too many")
+                let error = Diagnostic::error("E0212", message, place(i), "one too many");
+                if form.contains("vec3") {
+                    // The components of a vector given one by one.
+                    let help = format!("the form is `{form}`; a vector takes brackets: `(x, y, z)`");
+                    self.report(error.with_help(help));
+                    return;
+                }
+                error
             }
             Misfit::Unknown(i) => {
                 let name = text(i);

@@ -20,7 +20,7 @@ pub(crate) struct CurveValue {
 /// A tube: all points whose closest point on the curve is nearer than the radius there.
 ///
 /// Its "distance" is `max(|P - Q(t)| - radius(t), overshoot)`: zero at the wall and the flat ends
-/// and smooth near them, but not a bound to march by (`algorithms` section 3.2).
+/// and smooth near them, but not a bound to march by (`algorithms.md` §3.2).
 #[derive(Clone, Debug)]
 pub(crate) struct Tube {
     /// Index in [`crate::program::Program::curves`].

@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use vol_compiler::frame::{Frame, Image, Job};
+use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
@@ -55,40 +55,16 @@ enum Target<'a> {
 pub struct Rendered {
     /// The picture.
     pub image: Image,
-    /// What was done for it; graphics devices do not count.
-    pub work: Option<Work>,
+    /// What was done for it.
+    pub counts: Counts,
 }
 
-/// How much was computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Camera and shadow rays.
-    pub rays: u64,
-    /// Points inside media at which their properties were computed, for both kinds of rays.
-    pub samples: u64,
-    /// Points at which functions of the scene were computed: the samples, and the search for
-    /// surfaces and for the walls of media.
-    pub evaluations: u64,
-}
-
-impl Work {
-    /// The work of two pictures.
-    #[must_use]
-    pub fn plus(self, other: Self) -> Self {
-        Self {
-            rays: self.rays + other.rays,
-            samples: self.samples + other.samples,
-            evaluations: self.evaluations + other.evaluations,
-        }
-    }
-
-    fn of_cpu(stats: &vol_runtime_cpu::Stats) -> Self {
-        let samples = stats.medium_samples + stats.shadow_samples;
-        Self {
-            rays: stats.rays + stats.shadow_rays,
-            samples,
-            evaluations: samples + stats.surface_evaluations + stats.region_evaluations,
-        }
+fn counts_of_cpu(stats: &vol_runtime_cpu::Stats) -> Counts {
+    let samples = stats.medium_samples + stats.shadow_samples;
+    Counts {
+        rays: stats.rays + stats.shadow_rays,
+        samples,
+        evaluations: samples + stats.surface_evaluations + stats.region_evaluations,
     }
 }
 
@@ -206,13 +182,14 @@ impl Renderer<'_> {
             Target::Cpu(_) => {
                 let rendered = vol_runtime_cpu::render(self.program, frame, job, None, progress, cancelled);
                 let (image, stats) = rendered.ok_or(Failure::Interrupted)?;
-                Ok(Rendered { image, work: Some(Work::of_cpu(&stats)) })
+                Ok(Rendered { image, counts: counts_of_cpu(&stats) })
             }
             #[cfg(feature = "gpu")]
             Target::Gpu(gpu, renderer) => {
-                let image = renderer.render(gpu, self.program, frame, job, progress, cancelled);
-                let image = image.map_err(|error| gpu_failure(&error))?;
-                Ok(Rendered { image: image.ok_or(Failure::Interrupted)?, work: None })
+                let rendered = renderer.render(gpu, self.program, frame, job, progress, cancelled);
+                let rendered = rendered.map_err(|error| gpu_failure(&error))?;
+                let (image, counts) = rendered.ok_or(Failure::Interrupted)?;
+                Ok(Rendered { image, counts })
             }
         }
     }

@@ -152,6 +152,30 @@ pub struct Pixel {
     pub depth: f32,
 }
 
+/// How much was computed for a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Camera and shadow rays.
+    pub rays: u64,
+    /// Points inside media at which their properties were computed.
+    pub samples: u64,
+    /// Points at which functions of the scene were computed: the samples, and the search for
+    /// surfaces and for the walls of media.
+    pub evaluations: u64,
+}
+
+impl Counts {
+    /// The counts of two pictures.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            rays: self.rays + other.rays,
+            samples: self.samples + other.samples,
+            evaluations: self.evaluations + other.evaluations,
+        }
+    }
+}
+
 impl Program {
     /// The default value of every param, in order.
     #[must_use]

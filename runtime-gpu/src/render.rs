@@ -1,12 +1,12 @@
 //! Pictures and point-wise evaluation on the device.
 //!
-//! In: a [`Program`], compiled to a kernel once, and a [`Frame`] of it. Out: an [`Image`], or a
+//! In: a [`Program`], compiled to a kernel once, and a [`Frame`] of it. Out: an [`Image`] and how much was computed for it, or a
 //! function's values at points. Params, time and size are data: a new frame compiles nothing.
 
 use crate::{Buffer, Gpu, GpuError, Kernel, groups_for};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use vol_compiler::frame::{Frame, Image, Job};
+use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_compiler::wgsl;
@@ -58,7 +58,7 @@ impl Renderer {
         job: &Job,
         progress: &dyn Fn(u64),
         cancelled: &AtomicBool,
-    ) -> Result<Option<Image>, GpuError> {
+    ) -> Result<Option<(Image, Counts)>, GpuError> {
         let [width, height] = job.size;
         let words = |tile: [u32; 4]| wgsl::render::frame_words(program, frame, job, tile);
         let scene = Shared::upload(gpu, frame)?;
@@ -79,7 +79,8 @@ impl Renderer {
                 progress(done);
             }
         }
-        Ok(Some(wgsl::render::unpack(width, height, &gpu.read(&output)?)))
+        let words = gpu.read(&output)?;
+        Ok(Some((wgsl::render::unpack(width, height, &words), wgsl::render::counts(&words))))
     }
 }
 

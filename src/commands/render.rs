@@ -7,7 +7,7 @@ use vol::backend::{Choice, Device, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
-use vol_compiler::frame::Job;
+use vol_compiler::frame::{Counts, Job};
 
 use super::progress::Progress;
 use super::stats::{Phases, Stats, timed};
@@ -73,7 +73,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         step: None,
         shadow_step: None,
         estimate: 0.0,
-        work: None,
+        counts: Counts::default(),
         milliseconds: Phases {
             check: session.check_time,
             compile: session.compile_time,
@@ -135,7 +135,7 @@ impl Pictures<'_> {
             timed(&mut phases.render, || self.renderer.render(&frame, &job, &progress, &CANCELLED))?;
         super::stop_if_cancelled()?;
         timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
-        self.stats.add(&choice, rendered.work);
+        self.stats.add(&choice, rendered.counts);
         Ok(())
     }
 }

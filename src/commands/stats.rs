@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
-use vol::backend::Work;
+use vol_compiler::frame::Counts;
 use vol_runtime_cpu::StepChoice;
 
 /// The file's content; of several frames, sums and the worst.
@@ -29,24 +29,20 @@ pub(super) struct Stats {
     pub(super) shadow_step: Option<f32>,
     /// Estimated error; the largest of all frames.
     pub(super) estimate: f32,
-    /// `null` where the device does not count.
-    #[serde(flatten, serialize_with = "work")]
-    pub(super) work: Option<Work>,
+    /// Sums over all frames.
+    #[serde(flatten, serialize_with = "counts")]
+    pub(super) counts: Counts,
     pub(super) milliseconds: Phases,
 }
 
 impl Stats {
     /// Adds one picture.
-    pub(super) fn add(&mut self, choice: &StepChoice, work: Option<Work>) {
+    pub(super) fn add(&mut self, choice: &StepChoice, counts: Counts) {
         let smaller = |step: Option<f32>, other: f32| Some(step.map_or(other, |step| step.min(other)));
         self.step = smaller(self.step, choice.step);
         self.shadow_step = smaller(self.shadow_step, choice.shadow_step);
         self.estimate = self.estimate.max(choice.estimate);
-        self.work = match (self.frames, self.work, work) {
-            (0, _, work) => work,
-            (_, Some(before), Some(work)) => Some(before.plus(work)),
-            _ => None,
-        };
+        self.counts = self.counts.plus(counts);
         self.frames += 1;
     }
 }
@@ -74,11 +70,11 @@ pub(super) struct Phases {
     pub(super) write: Duration,
 }
 
-fn work<S: Serializer>(work: &Option<Work>, serializer: S) -> Result<S::Ok, S::Error> {
+fn counts<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(3))?;
-    map.serialize_entry("rays", &work.map(|work| work.rays))?;
-    map.serialize_entry("samples", &work.map(|work| work.samples))?;
-    map.serialize_entry("evaluations", &work.map(|work| work.evaluations))?;
+    map.serialize_entry("rays", &counts.rays)?;
+    map.serialize_entry("samples", &counts.samples)?;
+    map.serialize_entry("evaluations", &counts.evaluations)?;
     map.end()
 }
 

@@ -74,7 +74,9 @@ fn agrees(gpu: &vol_runtime_gpu::Gpu, path: &Path) -> Result<(), Failed> {
     let cpu = render(&program, &frame, &JOB, 2)?;
     let renderer = vol_runtime_gpu::Renderer::new(gpu, &program)?;
     let cancelled = std::sync::atomic::AtomicBool::new(false);
-    let gpu = renderer.render(gpu, &program, &frame, &JOB, &|_| {}, &cancelled)?;
-    let report = compare::images(&cpu, &gpu.ok_or("cancelled by nobody")?, compare::GPU_IMAGE);
+    let rendered = renderer.render(gpu, &program, &frame, &JOB, &|_| {}, &cancelled)?;
+    let (gpu, counts) = rendered.ok_or("cancelled by nobody")?;
+    ensure(counts.rays >= u64::from(SIZE[0] * SIZE[1]), || format!("{counts:?}"))?;
+    let report = compare::images(&cpu, &gpu, compare::GPU_IMAGE);
     ensure(report.passes(), || format!("{report:?}"))
 }

@@ -29,7 +29,7 @@
 //! might flush.
 
 use super::WgslError;
-use crate::frame::{Aabb, Frame, Image, Job, MediumFrame, Pixel};
+use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
 use std::fmt::Write;
@@ -58,7 +58,7 @@ const MEDIUM_WORDS: usize = 9;
 const CELL_WORDS: usize = 6;
 
 /// Words of `vol_output` per pixel.
-pub const PIXEL_WORDS: usize = 8;
+pub const PIXEL_WORDS: usize = 10;
 
 /// Depth that stands for "no surface"; the shader writes 1e30.
 const NO_DEPTH: f32 = 1e29;
@@ -88,8 +88,9 @@ const BINDINGS: &str = "\
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_input        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_output       f32: 8 words per pixel of the whole picture, rows from the top:
-//                      radiance rgb, transmittance rgb, depth (1e30: none), 0
+//   4 vol_output       f32: 10 words per pixel of the whole picture, rows from the top:
+//                      radiance rgb, transmittance rgb, depth (1e30: none), and how much was
+//                      computed: rays, samples of media, evaluations
 ";
 
 /// The complete shader of a program.
@@ -144,11 +145,17 @@ struct Pick<'a> {
     functions: Vec<FunctionId>,
     /// What becomes of the result `v` of a function.
     result: &'a str,
+    /// Private variables that count the calls.
+    counters: &'a [&'a str],
 }
 
 impl Pick<'_> {
     fn wgsl(&self) -> String {
-        let mut text = format!("\nfn {} {{\n    switch index {{\n", self.signature);
+        let mut text = format!("\nfn {} {{\n", self.signature);
+        for counter in self.counters {
+            let _ = writeln!(text, "    {counter} += 1u;");
+        }
+        text += "    switch index {\n";
         for (index, function) in self.functions.iter().enumerate() {
             let call = format!("let v = vol_f{}({});", function.0, self.arguments);
             let _ = writeln!(
@@ -170,39 +177,46 @@ fn picks(program: &Program) -> [Pick<'static>; 7] {
     let of_objects =
         |pick: fn(&crate::program::Object) -> FunctionId| program.objects.iter().map(pick).collect();
     let of_media = |pick: fn(&crate::program::Medium) -> FunctionId| program.media.iter().map(pick).collect();
-    let point = |signature, otherwise, functions, result| Pick {
+    let point = |signature, otherwise, functions, result, counters| Pick {
         signature,
         otherwise,
         arguments: "p.x, p.y, p.z",
         functions,
         result,
+        counters,
     };
+    const SEARCH: &[&str] = &["counted_evaluations"];
+    const SAMPLE: &[&str] = &["counted_evaluations", "counted_samples"];
     [
-        point("object_distance(index: u32, p: vec3f) -> f32", "FAR", of_objects(|o| o.distance), "v"),
+        point("object_distance(index: u32, p: vec3f) -> f32", "FAR", of_objects(|o| o.distance), "v", SEARCH),
         point(
             "object_gradient(index: u32, p: vec3f) -> vec3f",
             "vec3f(0.0)",
             of_objects(|o| o.gradient),
             "v",
+            SEARCH,
         ),
         point(
             "object_surface(index: u32, p: vec3f) -> Response",
             "Response(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0)",
             of_objects(|o| o.surface),
             "Response(vec3f(v.v0, v.v1, v.v2), vec3f(v.v3, v.v4, v.v5), vec3f(v.v6, v.v7, v.v8), v.v9)",
+            &[],
         ),
-        point("medium_region(index: u32, p: vec3f) -> f32", "FAR", of_media(|m| m.region), "v"),
+        point("medium_region(index: u32, p: vec3f) -> f32", "FAR", of_media(|m| m.region), "v", SEARCH),
         point(
             "medium_interior(index: u32, p: vec3f) -> Interior",
             "Interior(vec3f(0.0), vec3f(0.0), vec3f(0.0))",
             of_media(|m| m.interior),
             "Interior(vec3f(v.v0, v.v1, v.v2), vec3f(v.v3, v.v4, v.v5), vec3f(v.v6, v.v7, v.v8))",
+            SAMPLE,
         ),
         point(
             "medium_extinction(index: u32, p: vec3f) -> vec3f",
             "vec3f(0.0)",
             of_media(|m| m.extinction),
             "v",
+            SAMPLE,
         ),
         Pick {
             signature: "medium_phase(index: u32, less: f32, more: f32) -> f32",
@@ -210,6 +224,7 @@ fn picks(program: &Program) -> [Pick<'static>; 7] {
             arguments: "less, more",
             functions: of_media(|m| m.phase),
             result: "v",
+            counters: &[],
         },
     ]
 }
@@ -317,6 +332,19 @@ pub fn unpack(width: u32, height: u32, words: &[u32]) -> Image {
         }
     };
     Image { width, height, pixels: words.chunks_exact(PIXEL_WORDS).map(pixel).collect() }
+}
+
+/// How much was computed, of the contents of `vol_output`.
+#[must_use]
+pub fn counts(words: &[u32]) -> Counts {
+    let mut counts = Counts::default();
+    for pixel in words.chunks_exact(PIXEL_WORDS) {
+        let [rays, samples, evaluations] = [7, 8, 9].map(|index| f32::from_bits(pixel[index]) as u64);
+        counts.rays += rays;
+        counts.samples += samples;
+        counts.evaluations += evaluations;
+    }
+    counts
 }
 
 #[cfg(test)]

@@ -70,6 +70,11 @@ fn power(x: f32, y: f32) -> f32 {
     return select(0.0, value, some);
 }
 
+// How much this invocation has computed, for statistics.
+var<private> counted_rays: u32;
+var<private> counted_samples: u32;
+var<private> counted_evaluations: u32;
+
 @compute @workgroup_size(8, 8)
 fn render(@builtin(global_invocation_id) id: vec3u) {
     let tile = vec4u(
@@ -84,6 +89,7 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
     let column = tile.x + id.x;
     let row = tile.y + id.y;
     let ray = camera_ray(vec2f(f32(column) + 0.5, f32(row) + 0.5));
+    counted_rays += 1u;
     // Find what is behind the media: surfaces, else the background.
     let contact = trace(ray);
     var behind = word3(AT_BACKGROUND);
@@ -102,7 +108,7 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
 }
 
 fn write_pixel(index: u32, color: vec3f, transmittance: vec3f, depth: f32) {
-    let at = 8u * index;
+    let at = 10u * index;
     vol_output[at] = color.x;
     vol_output[at + 1u] = color.y;
     vol_output[at + 2u] = color.z;
@@ -110,5 +116,7 @@ fn write_pixel(index: u32, color: vec3f, transmittance: vec3f, depth: f32) {
     vol_output[at + 4u] = transmittance.y;
     vol_output[at + 5u] = transmittance.z;
     vol_output[at + 6u] = depth;
-    vol_output[at + 7u] = 0.0;
+    vol_output[at + 7u] = f32(counted_rays);
+    vol_output[at + 8u] = f32(counted_samples);
+    vol_output[at + 9u] = f32(counted_evaluations);
 }

@@ -3,6 +3,7 @@
 
 // Fraction of the light that arrives, per channel.
 fn visibility(ray: Ray, distance: f32, bias: f32) -> vec3f {
+    counted_rays += 1u;
     // Only what no solid hides goes through the media.
     if (blocked(ray, distance, 0.25 * bias)) {
         return vec3f(0.0);

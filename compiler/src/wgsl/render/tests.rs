@@ -151,8 +151,12 @@ fn cells_are_used_if_they_say_more_than_the_box() {
 
 #[test]
 fn depth_without_a_surface_is_infinite() {
-    let words = [1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 0.0_f32];
-    let image = unpack(2, 1, &words.map(f32::to_bits));
+    let first = [1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30, 1.0, 2.0, 3.0_f32];
+    let second = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 4.0, 5.0, 6.0];
+    let words = [first, second].concat();
+    let words: Vec<u32> = words.into_iter().map(f32::to_bits).collect();
+    let image = unpack(2, 1, &words);
+    assert_eq!(counts(&words), Counts { rays: 5, samples: 7, evaluations: 9 });
     assert_eq!(image.pixels[0].depth, f32::INFINITY);
     assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
     assert_eq!(image.pixels[1].depth, 7.0);

@@ -121,7 +121,7 @@ pub const EXACT: ImageClass = ImageClass { name: "EXACT", threshold: 0.0, allowe
 pub const GPU_IMAGE: ImageClass =
     ImageClass { name: "GPU_IMAGE", threshold: 1e-4, allowed_share: 2e-3, hard_cap: 0.1 };
 
-/// f32 against f64 with the same samples: rounding alone. The examples differ by at most 4e-6, but
+/// f32 against f64 with the same samples: rounding alone. The examples differ by at most 2e-5, but
 /// where a ray grazes a surface; pictures for this are small, so one such ray is a larger share.
 pub const PRECISION: ImageClass =
     ImageClass { name: "PRECISION", threshold: 1e-4, allowed_share: 2e-2, hard_cap: 0.1 };

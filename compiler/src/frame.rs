@@ -45,8 +45,6 @@ pub struct Frame {
     pub lights: Vec<LightFrame>,
     /// Radiance where nothing is hit.
     pub background: [f32; 3],
-    /// Ambient light, already multiplied into the surfaces' emitted part.
-    pub ambient: [f32; 3],
     /// Box around all bounded objects and media; what the default camera frames.
     pub bounds: Aabb,
 }
@@ -240,7 +238,6 @@ impl Program {
         Ok(Frame {
             camera: camera::camera(&view, bounds),
             background: round3(at3(self.render.background)),
-            ambient: round3(at3(self.render.ambient)),
             bounds: extent::rounded(bounds),
             uniforms_f32: uniforms.iter().map(|&v| v as f32).collect(),
             uniforms,

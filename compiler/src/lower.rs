@@ -42,7 +42,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0405", "a value must be known at compile time"),
     ("E0406", "a local coordinate that this region does not have"),
     ("E0407", "a number outside of what a function takes"),
-    ("E0408", "a surface without a derivative: a tube as an object"),
+    ("E0408", "a surface without a slope: a tube as an object"),
     ("E0501", "a displacement is not bounded"),
 ];
 

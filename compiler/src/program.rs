@@ -8,6 +8,10 @@ use crate::ir::{FunctionId, Module};
 use vol_language::source::Span;
 use vol_language::ty::Type;
 
+/// Least radius of a tube, in scene units: a radius function may touch 0, and local coordinates
+/// divide by it.
+pub const LEAST_RADIUS: f64 = 1e-6;
+
 /// Index of a number among the frame function's outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Slot(pub u32);
@@ -168,8 +172,6 @@ pub struct Render {
     pub size: [u32; 2],
     /// Radiance where nothing is hit.
     pub background: Slot3,
-    /// Ambient light.
-    pub ambient: Slot3,
     /// Length of the animation in seconds.
     pub duration: Slot,
     /// Frames per second.
@@ -201,7 +203,7 @@ pub enum Extent {
     Tube {
         /// The curve.
         curve: u32,
-        /// (t, arc length) to radius: 2 inputs, 1 output.
+        /// (t, arc length) to radius, held at [`LEAST_RADIUS`] by its users: 2 inputs, 1 output.
         radius: FunctionId,
     },
     /// Smallest box around all.

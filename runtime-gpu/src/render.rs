@@ -1,7 +1,8 @@
 //! Pictures and point-wise evaluation on the device.
 //!
-//! In: a [`Program`], compiled to a kernel once, and a [`Frame`] of it. Out: an [`Image`] and how much was computed for it, or a
-//! function's values at points. Params, time and size are data: a new frame compiles nothing.
+//! In: a [`Program`], compiled to a kernel once, and a [`Frame`] of it. Out: an [`Image`] and how
+//! much was computed for it, or a function's values at points. Params, time and size are data: a new
+//! frame compiles nothing.
 
 use crate::{Buffer, Gpu, GpuError, Kernel, groups_for};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -4,7 +4,7 @@ use super::Aabb;
 use crate::curve::{CurveTable, Quadratic};
 use crate::ir::{FunctionId, Module};
 use crate::ops::interval::Interval;
-use crate::program::{Extent, Slot, Slot3};
+use crate::program::{Extent, LEAST_RADIUS, Slot, Slot3};
 use crate::reference;
 use glam::DVec3;
 use vol_language::diag::Diagnostic;
@@ -71,9 +71,6 @@ const SEGMENT_CELLS: usize = 16;
 
 /// Most cells of a solid.
 const MOST_CELLS: usize = 64;
-
-/// Least radius of a tube, as `lower/tube.rs` has it.
-const LEAST_RADIUS: f64 = 1e-6;
 
 /// Slower parts of an axis than this fraction of the fastest count as kinks.
 const SLOW: f64 = 1e-3;

@@ -25,23 +25,31 @@ fn primitives() -> Vec<Builtin> {
     let float = |name| required(name, Type::Float);
     let vec3 = |name| required(name, Type::Vec3);
     vec![
-        call("sphere", vec![float("radius")], Type::Shape, "ball at the origin; exact", |_, span, a| {
-            Shape::value(Kind::Sphere { radius: a[0].scalar() }, span)
-        }),
+        call(
+            "sphere",
+            vec![float("radius")],
+            Type::Shape,
+            "ball at the origin; exact",
+            |lowerer, span, a| Shape::value(Kind::Sphere { radius: a[0].scalar() }, lowerer, span),
+        ),
         call(
             "box",
             vec![vec3("half")],
             Type::Shape,
             "box at the origin from its half extents; exact",
-            |_, span, a| Shape::value(Kind::Box { half: a[0].vec3() }, span),
+            |lowerer, span, a| Shape::value(Kind::Box { half: a[0].vec3() }, lowerer, span),
         ),
         call(
             "cylinder",
             vec![float("radius"), float("half_height")],
             Type::Shape,
             "capped cylinder around the y axis, from -half_height to half_height; exact",
-            |_, span, a| {
-                Shape::value(Kind::Cylinder { radius: a[0].scalar(), half_height: a[1].scalar() }, span)
+            |lowerer, span, a| {
+                Shape::value(
+                    Kind::Cylinder { radius: a[0].scalar(), half_height: a[1].scalar() },
+                    lowerer,
+                    span,
+                )
             },
         ),
         call(
@@ -49,22 +57,28 @@ fn primitives() -> Vec<Builtin> {
             vec![float("radius")],
             Type::Shape,
             "cylinder around the y axis; exact",
-            |_, span, a| Shape::value(Kind::InfiniteCylinder { radius: a[0].scalar() }, span),
+            |lowerer, span, a| Shape::value(Kind::InfiniteCylinder { radius: a[0].scalar() }, lowerer, span),
         ),
         call(
             "torus",
             vec![float("major"), float("minor")],
             Type::Shape,
             "ring around the y axis: a circle of radius major, thickened by minor; exact",
-            |_, span, a| Shape::value(Kind::Torus { major: a[0].scalar(), minor: a[1].scalar() }, span),
+            |lowerer, span, a| {
+                Shape::value(Kind::Torus { major: a[0].scalar(), minor: a[1].scalar() }, lowerer, span)
+            },
         ),
         call(
             "capsule",
             vec![vec3("a"), vec3("b"), float("radius")],
             Type::Shape,
             "all points within radius of the segment from a to b; exact",
-            |_, span, a| {
-                Shape::value(Kind::Capsule { a: a[0].vec3(), b: a[1].vec3(), radius: a[2].scalar() }, span)
+            |lowerer, span, a| {
+                Shape::value(
+                    Kind::Capsule { a: a[0].vec3(), b: a[1].vec3(), radius: a[2].scalar() },
+                    lowerer,
+                    span,
+                )
             },
         ),
         call(
@@ -76,6 +90,7 @@ fn primitives() -> Vec<Builtin> {
                 let normal = math::normalize(&mut lowerer.graph, a[0].numbers());
                 Shape::value(
                     Kind::Plane { normal: Value::Numbers(normal).vec3(), offset: a[1].scalar() },
+                    lowerer,
                     span,
                 )
             },
@@ -99,7 +114,7 @@ fn tube_builtin() -> Builtin {
     call("tube", params, Type::Shape, doc, |lowerer, span, a| {
         let stretch = lowerer.compile_time(a[3].scalar(), "`stretch`", span)? != 0.0;
         let (radius, twist) = (a[1].function(), a[2].function());
-        Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, span)
+        Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, lowerer, span)
     })
 }
 
@@ -122,7 +137,7 @@ fn combinations() -> Vec<Builtin> {
             "all points of any shape; smooth is the width of the blend",
             |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[1]);
-                Shape::value(Kind::Union { shapes: shape_list(&a[0]), smooth }, span)
+                Shape::value(Kind::Union { shapes: shape_list(&a[0]), smooth }, lowerer, span)
             },
         ),
         call(
@@ -132,7 +147,7 @@ fn combinations() -> Vec<Builtin> {
             "the points common to all shapes; smooth is the width of the blend",
             |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[1]);
-                Shape::value(Kind::Intersection { shapes: shape_list(&a[0]), smooth }, span)
+                Shape::value(Kind::Intersection { shapes: shape_list(&a[0]), smooth }, lowerer, span)
             },
         ),
         call(
@@ -142,7 +157,11 @@ fn combinations() -> Vec<Builtin> {
             "the points of the first shape that are not in the second; smooth is the width of the blend",
             |lowerer, span, a| {
                 let smooth = blend_width(lowerer, &a[2]);
-                Shape::value(Kind::Difference { from: a[0].shape(), what: a[1].shape(), smooth }, span)
+                Shape::value(
+                    Kind::Difference { from: a[0].shape(), what: a[1].shape(), smooth },
+                    lowerer,
+                    span,
+                )
             },
         ),
     ]
@@ -171,7 +190,9 @@ fn transforms() -> Vec<Builtin> {
             vec![child(), required("offset", Type::Vec3)],
             Type::Shape,
             "moved by offset",
-            |_, span, a| Shape::value(Kind::Translated { child: a[0].shape(), offset: a[1].vec3() }, span),
+            |lowerer, span, a| {
+                Shape::value(Kind::Translated { child: a[0].shape(), offset: a[1].vec3() }, lowerer, span)
+            },
         ),
         turn("rotate_x", "turned about the x axis, y towards z", |l, span, a| rotated(l, a, 0, span)),
         turn("rotate_y", "turned about the y axis, z towards x", |l, span, a| rotated(l, a, 1, span)),
@@ -181,22 +202,30 @@ fn transforms() -> Vec<Builtin> {
             vec![child(), required("factor", Type::Float)],
             Type::Shape,
             "scaled about the origin",
-            |_, span, a| Shape::value(Kind::Scaled { child: a[0].shape(), factor: a[1].scalar() }, span),
+            |lowerer, span, a| {
+                Shape::value(Kind::Scaled { child: a[0].shape(), factor: a[1].scalar() }, lowerer, span)
+            },
         ),
         call(
             "round",
             vec![child(), required("radius", Type::Float)],
             Type::Shape,
             "grown by radius on all sides, which rounds the edges",
-            |_, span, a| Shape::value(Kind::Rounded { child: a[0].shape(), radius: a[1].scalar() }, span),
+            |lowerer, span, a| {
+                Shape::value(Kind::Rounded { child: a[0].shape(), radius: a[1].scalar() }, lowerer, span)
+            },
         ),
         call(
             "displace",
             vec![child(), required("amount", of_position)],
             Type::Shape,
             "the surface moved inwards by an amount that depends on the position; marched safely by the amount's own slope",
-            |_, span, a| {
-                Shape::value(Kind::Displaced { child: a[0].shape(), amount: a[1].function(), span }, span)
+            |lowerer, span, a| {
+                Shape::value(
+                    Kind::Displaced { child: a[0].shape(), amount: a[1].function(), span },
+                    lowerer,
+                    span,
+                )
             },
         ),
     ]
@@ -216,7 +245,7 @@ fn rotated(lowerer: &mut Lowerer<'_>, args: &[Value], axis: usize, span: Span) -
     columns[next][last] = sine;
     columns[last][next] = minus;
     columns[last][last] = cosine;
-    Shape::value(Kind::Rotated { child: args[0].shape(), columns }, span)
+    Shape::value(Kind::Rotated { child: args[0].shape(), columns }, lowerer, span)
 }
 
 fn curves() -> Vec<Builtin> {

@@ -161,7 +161,7 @@ impl Lowerer<'_> {
 
     fn binary(&mut self, op: BinaryOp, a: &Value, b: &Value, span: Span) -> Lowered<Value> {
         if let (Value::Shape(a), Value::Shape(b)) = (a, b) {
-            return super::shape::operator(op, Rc::clone(a), Rc::clone(b), span);
+            return super::shape::operator(self, op, Rc::clone(a), Rc::clone(b), span);
         }
         let (a, b) = (a.numbers(), b.numbers());
         Ok(Value::Numbers(a.iter().zip(b).map(|(&a, &b)| self.scalar_operator(op, a, b)).collect()))
@@ -256,22 +256,16 @@ impl Lowerer<'_> {
         })
     }
 
-    /// Refuses numbers that are known to be less than `least` (or equal, unless `or_equal`). What a
-    /// param or the time sets is not known here.
-    pub(crate) fn at_least(
+    /// Refuses numbers that are known to be wrong. What a param or the time sets is not known here.
+    pub(crate) fn refuse(
         &self,
         values: &[ValueId],
-        least: f64,
-        or_equal: bool,
-        what: &str,
+        wrong: fn(f64) -> bool,
+        message: &str,
         span: Span,
     ) -> Lowered<()> {
-        let wrong = |number: &f64| if or_equal { *number < least } else { *number <= least };
-        let Some(number) = values.iter().filter_map(|&v| self.graph.constant(v)).find(wrong) else {
-            return Ok(());
-        };
-        let relation = if or_equal { "at least" } else { "more than" };
-        let message = format!("{what} must be {relation} {least}");
+        let mut known = values.iter().filter_map(|&value| self.graph.constant(value));
+        let Some(number) = known.find(|&number| wrong(number)) else { return Ok(()) };
         let diagnostic = Diagnostic::error("E0407", message, span, format!("here it is {number}"));
         Err(Box::new(diagnostic.with_help("change the number, or leave the shape out with the key `when`")))
     }

@@ -127,11 +127,9 @@ fn render(lowerer: &mut Lowerer<'_>, block: Option<&Block>) -> Lowered<Render> {
         None => SIZE,
     };
     let black = lowerer.constant_slots([0.0; 3]);
-    let white = lowerer.constant_slots([1.0; 3]);
     Ok(Render {
         size,
         background: lowerer.vector_slots(block, "background")?.unwrap_or(black),
-        ambient: lowerer.vector_slots(block, "ambient")?.unwrap_or(white),
         duration: lowerer.scalar_slot(block, "duration", 0.0)?,
         fps: lowerer.scalar_slot(block, "fps", 30.0)?,
     })

@@ -70,19 +70,26 @@ pub(crate) enum Kind {
 }
 
 /// `a | b`, `a & b`, `a - b`
-pub(crate) fn operator(op: BinaryOp, a: Rc<Shape>, b: Rc<Shape>, span: Span) -> Lowered<Value> {
+pub(crate) fn operator(
+    lowerer: &Lowerer<'_>,
+    op: BinaryOp,
+    a: Rc<Shape>,
+    b: Rc<Shape>,
+    span: Span,
+) -> Lowered<Value> {
     let kind = match op {
         BinaryOp::Union => Kind::Union { shapes: vec![a, b], smooth: None },
         BinaryOp::Intersection => Kind::Intersection { shapes: vec![a, b], smooth: None },
         BinaryOp::Subtract => Kind::Difference { from: a, what: b, smooth: None },
         other => unreachable!("shapes have no operator {}", other.symbol()),
     };
-    Shape::value(kind, span)
+    Shape::value(kind, lowerer, span)
 }
 
 impl Shape {
-    /// A value of a kind, within the limits on its size.
-    pub(crate) fn value(kind: Kind, span: Span) -> Lowered<Value> {
+    /// A value of a kind, within the limits; sizes known to make no solid are refused.
+    pub(crate) fn value(kind: Kind, lowerer: &Lowerer<'_>, span: Span) -> Lowered<Value> {
+        kind.check_sizes(lowerer, span)?;
         let children = kind.children();
         let parts = children.iter().fold(1u32, |sum, child| sum.saturating_add(child.parts));
         let levels = 1 + children.iter().map(|child| child.levels).max().unwrap_or(0);
@@ -90,29 +97,6 @@ impl Shape {
             return Err(too_large(parts, span));
         }
         Ok(Value::Shape(Rc::new(Self { kind, parts, levels })))
-    }
-
-    /// Refuses sizes that are known to make no solid.
-    pub(crate) fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
-        let sizes: (&[ValueId], &str) = match &self.kind {
-            Kind::Sphere { radius } | Kind::InfiniteCylinder { radius } | Kind::Capsule { radius, .. } => {
-                (&[*radius], "a radius")
-            }
-            Kind::Box { half } => (half, "a half extent"),
-            Kind::Cylinder { radius, half_height } => (&[*radius, *half_height], "a radius or half height"),
-            Kind::Torus { major, minor } => (&[*major, *minor], "a radius"),
-            Kind::Scaled { factor, .. } => return lowerer.at_least(&[*factor], 0.0, false, "a scale", span),
-            Kind::Plane { .. }
-            | Kind::Tube(_)
-            | Kind::Union { .. }
-            | Kind::Intersection { .. }
-            | Kind::Difference { .. }
-            | Kind::Translated { .. }
-            | Kind::Rotated { .. }
-            | Kind::Rounded { .. }
-            | Kind::Displaced { .. } => return Ok(()),
-        };
-        lowerer.at_least(sizes.0, 0.0, true, sizes.1, span)
     }
 
     /// Signed distance (or the bound that the variant states) at a point.
@@ -301,6 +285,31 @@ impl Shape {
 }
 
 impl Kind {
+    /// Refuses sizes that are known to make no solid.
+    fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
+        let (sizes, what): (&[ValueId], &str) = match self {
+            Self::Sphere { radius } | Self::InfiniteCylinder { radius } | Self::Capsule { radius, .. } => {
+                (&[*radius], "a radius")
+            }
+            Self::Box { half } => (half, "a half extent"),
+            Self::Cylinder { radius, half_height } => (&[*radius, *half_height], "a radius or half height"),
+            Self::Torus { major, minor } => (&[*major, *minor], "a radius"),
+            Self::Scaled { factor, .. } => {
+                return lowerer.refuse(&[*factor], |x| x <= 0.0, "a scale must be more than 0", span);
+            }
+            Self::Plane { .. }
+            | Self::Tube(_)
+            | Self::Union { .. }
+            | Self::Intersection { .. }
+            | Self::Difference { .. }
+            | Self::Translated { .. }
+            | Self::Rotated { .. }
+            | Self::Rounded { .. }
+            | Self::Displaced { .. } => return Ok(()),
+        };
+        lowerer.refuse(sizes, |x| x < 0.0, &format!("{what} must be at least 0"), span)
+    }
+
     /// The shapes that this one is made of.
     fn children(&self) -> Vec<&Shape> {
         match self {
@@ -496,10 +505,9 @@ fn displaced_extent(
 /// Derivatives of a value with respect to the position.
 pub(crate) fn gradient(lowerer: &mut Lowerer<'_>, value: ValueId, span: Span) -> Lowered<Vec<ValueId>> {
     crate::passes::gradient::gradient(&mut lowerer.graph, value, &[0, 1, 2]).ok_or_else(|| {
-        let message = "a tube cannot be the surface of an object in this version";
-        Box::new(
-            Diagnostic::error("E0408", message, span, "this shape contains a tube")
-                .with_help("fill it with a medium: `medium name { region: … }`, or use `capsule`"),
-        )
+        let message = "this surface has no slope by which it could be lit and marched";
+        let label = "it contains a tube, or an `fbm` whose lacunarity or gain changes with the position";
+        let help = "fill a tube with a medium, `medium name { region: … }`, or use `capsule`; make lacunarity and gain constant";
+        Box::new(Diagnostic::error("E0408", message, span, label).with_help(help))
     })
 }

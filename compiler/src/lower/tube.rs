@@ -5,7 +5,7 @@ use super::value::Closure;
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
 use crate::ops::Op;
-use crate::program::{Curve, Extent};
+use crate::program::{Curve, Extent, LEAST_RADIUS};
 use std::rc::Rc;
 use vol_language::hir::LocalField;
 use vol_language::source::Span;
@@ -70,8 +70,7 @@ impl Tube {
             unreachable!("the operation table gives the closest point eight results")
         };
         let radius = lowerer.call_numbers(&self.radius, &[t, arc_length])?.scalar();
-        // A radius function may touch 0; the coordinates divide by it.
-        let least = lowerer.graph.number(1e-6);
+        let least = lowerer.graph.number(LEAST_RADIUS);
         let radius = lowerer.graph.max(radius, least);
         Ok(Foot { t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor, radius })
     }

@@ -43,13 +43,7 @@ fn program(objects: usize, media: usize) -> Program {
         media: vec![medium; media],
         lights: Vec::new(),
         camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
-        render: Render {
-            size: [4, 4],
-            background: [NOWHERE; 3],
-            ambient: [NOWHERE; 3],
-            duration: NOWHERE,
-            fps: NOWHERE,
-        },
+        render: Render { size: [4, 4], background: [NOWHERE; 3], duration: NOWHERE, fps: NOWHERE },
         fields: Vec::new(),
         report: Vec::new(),
     }
@@ -90,7 +84,6 @@ fn frame(program: &Program) -> Frame {
         }],
         lights: vec![LightFrame { distant: true, position: [0.0, 1.0, 0.0], color: [2.0; 3], shadows: true }],
         background: [13.0, 14.0, 15.0],
-        ambient: [0.0; 3],
         bounds: whole,
     }
 }

@@ -158,13 +158,7 @@ impl World {
             media: Vec::new(),
             lights: Vec::new(),
             camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
-            render: Render {
-                size: [16, 16],
-                background: [NOWHERE; 3],
-                ambient: [NOWHERE; 3],
-                duration: NOWHERE,
-                fps: NOWHERE,
-            },
+            render: Render { size: [16, 16], background: [NOWHERE; 3], duration: NOWHERE, fps: NOWHERE },
             fields: Vec::new(),
             report: Vec::new(),
         };
@@ -183,7 +177,6 @@ impl World {
             media: Vec::new(),
             lights: Vec::new(),
             background: [0.0; 3],
-            ambient: [0.0; 3],
             bounds: Aabb { lo: [-1.0; 3], hi: [1.0; 3] },
         };
         Self { program, frame }

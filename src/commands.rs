@@ -21,7 +21,7 @@ use vol::output::atomic;
 use vol::session::{Moment, Session};
 use vol_compiler::frame::Frame;
 use vol_language::diag::{self, Diagnostic};
-use vol_language::source::SourceFile;
+use vol_language::source::Sources;
 
 use crate::cli::{self, Command};
 
@@ -45,7 +45,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 /// Writes to standard error why a command failed.
 pub(crate) fn print_failure(failure: &Failure) {
     match failure {
-        Failure::Scene { file, diagnostics } => print_diagnostics(file, diagnostics),
+        Failure::Scene { sources, diagnostics } => print_diagnostics(sources, diagnostics),
         Failure::Usage(message) | Failure::Content(message) | Failure::Device(message) => {
             print_message("error", message);
         }
@@ -55,9 +55,9 @@ pub(crate) fn print_failure(failure: &Failure) {
 }
 
 /// Writes diagnostics to standard error, in colour on a terminal.
-fn print_diagnostics(file: &SourceFile, diagnostics: &[Diagnostic]) {
+fn print_diagnostics(sources: &Sources, diagnostics: &[Diagnostic]) {
     if !diagnostics.is_empty() {
-        let text = diag::render::human(file, diagnostics, has_colour());
+        let text = diag::render::human(sources, diagnostics, has_colour());
         print_line(text.trim_end_matches('\n'));
     }
 }
@@ -101,7 +101,7 @@ impl Prepared {
 /// Loads a scene and shows its warnings.
 fn load(path: &std::path::Path) -> Result<Session, Failure> {
     let session = vol::session::load(path)?;
-    print_diagnostics(&session.file, &session.warnings);
+    print_diagnostics(&session.sources, &session.warnings);
     Ok(session)
 }
 

@@ -16,7 +16,7 @@ use std::io;
 use std::path::Path;
 
 use vol_language::diag::Diagnostic;
-use vol_language::source::SourceFile;
+use vol_language::source::Sources;
 
 /// Why a command stops.
 #[derive(Debug)]
@@ -25,8 +25,8 @@ pub enum Failure {
     Usage(Message),
     /// The scene has mistakes at known places. Exit code 1.
     Scene {
-        /// The scene's text.
-        file: Box<SourceFile>,
+        /// The scene's texts.
+        sources: Box<Sources>,
         /// At least one error; warnings may stand beside it.
         diagnostics: Vec<Diagnostic>,
     },

@@ -8,23 +8,25 @@ mod params;
 
 use std::fs::File;
 use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use vol_compiler::frame::Frame;
 use vol_compiler::program::{Field, Program, Slot};
 use vol_compiler::{library, lower, reference};
+use vol_language::Analysis;
 use vol_language::diag::Diagnostic;
+use vol_language::module::Loader;
 use vol_language::nearest::nearest;
-use vol_language::source::{MAX_SOURCE_BYTES, SourceError, SourceFile};
+use vol_language::source::{MAX_SOURCE_BYTES, SourceError, SourceFile, Sources};
 
 use crate::failure::Failure;
 
 /// A scene that is ready to render.
 #[derive(Debug)]
 pub struct Session {
-    /// The scene's text.
-    pub file: SourceFile,
+    /// The scene's text and those that it imports.
+    pub sources: Sources,
     /// The compiled scene.
     pub program: Program,
     /// What is suspicious but no error.
@@ -44,29 +46,59 @@ pub struct Moment {
     pub frame: f64,
 }
 
+/// Why a file is not read.
+enum ReadError {
+    File(String),
+    Content(SourceError),
+}
+
 /// Reads a scene file; of a file over the size limit no more than the limit is read.
 ///
 /// # Errors
 /// A usage failure if it cannot be read, a content failure if it is no scene text.
 pub fn read(path: &Path) -> Result<SourceFile, Failure> {
-    let failed = |error| Failure::io("cannot read", path, error);
+    read_text(path).map_err(|error| match error {
+        ReadError::File(reason) => Failure::io("cannot read", path, reason),
+        ReadError::Content(error) => Failure::content(format!("cannot use `{}`: {error}", path.display())),
+    })
+}
+
+fn read_text(path: &Path) -> Result<SourceFile, ReadError> {
+    let failed = |error: std::io::Error| ReadError::File(error.to_string());
     let file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
     if metadata.is_dir() {
-        return Err(Failure::io("cannot read", path, "it is a folder, not a scene"));
+        return Err(ReadError::File("it is a folder, not a scene".to_owned()));
     }
     let mut bytes = Vec::new();
     file.take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
     SourceFile::from_bytes(path.display().to_string(), bytes).map_err(|error| {
-        let error = match error {
+        ReadError::Content(match error {
             // What was read stops at the limit.
             SourceError::TooLarge { bytes } => {
                 SourceError::TooLarge { bytes: bytes.max(metadata.len() as usize) }
             }
             SourceError::BinaryGrid | SourceError::NotUtf8 { .. } => error,
-        };
-        Failure::content(format!("cannot use `{}`: {error}", path.display()))
+        })
     })
+}
+
+/// The folder of a scene; files that it imports lie below.
+struct Folder(PathBuf);
+
+impl Loader for Folder {
+    fn read(&self, path: &str) -> Result<SourceFile, String> {
+        let inside = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
+        let root = if self.0.as_os_str().is_empty() { Path::new(".") } else { &self.0 };
+        // A link may lead out of the folder although the path does not.
+        if !inside(&self.0.join(path))?.starts_with(inside(root)?) {
+            return Err("it lies outside of the scene's folder".to_owned());
+        }
+        read_text(&self.0.join(path)).map_err(|error| match error {
+            ReadError::File(reason) => reason,
+            ReadError::Content(error) => error.to_string(),
+        })
+    }
 }
 
 /// Reads, checks and compiles a scene.
@@ -74,27 +106,29 @@ pub fn read(path: &Path) -> Result<SourceFile, Failure> {
 /// # Errors
 /// As [`read`], and a scene failure with all the mistakes found.
 pub fn load(path: &Path) -> Result<Session, Failure> {
-    compile(read(path)?)
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    compile(read(path)?, &Folder(folder))
 }
 
 /// Checks and compiles a scene text.
 ///
 /// # Errors
 /// A scene failure with all the mistakes found.
-pub fn compile(file: SourceFile) -> Result<Session, Failure> {
+pub fn compile(file: SourceFile, loader: &dyn Loader) -> Result<Session, Failure> {
     let started = Instant::now();
-    let (scene, mut diagnostics) = vol_language::analyse(&file, &library::library());
+    let Analysis { scene, mut diagnostics, sources } =
+        vol_language::analyse_with(file, &library::library(), loader);
     let check_time = started.elapsed();
     let Some(scene) = scene else {
-        return Err(Failure::Scene { file: Box::new(file), diagnostics });
+        return Err(Failure::Scene { sources: Box::new(sources), diagnostics });
     };
     let started = Instant::now();
     let (program, found) = lower::compile(&scene);
     let compile_time = started.elapsed();
     diagnostics.extend(found);
     match program {
-        Some(program) => Ok(Session { file, program, warnings: diagnostics, check_time, compile_time }),
-        None => Err(Failure::Scene { file: Box::new(file), diagnostics }),
+        Some(program) => Ok(Session { sources, program, warnings: diagnostics, check_time, compile_time }),
+        None => Err(Failure::Scene { sources: Box::new(sources), diagnostics }),
     }
 }
 
@@ -114,7 +148,7 @@ impl Session {
     pub fn frame(&self, params: &[Vec<f64>], moment: Moment, size: [u32; 2]) -> Result<Frame, Failure> {
         let frame = self.program.frame(params, moment.time, moment.frame, size);
         frame.map_err(|diagnostic| Failure::Scene {
-            file: Box::new(self.file.clone()),
+            sources: Box::new(self.sources.clone()),
             diagnostics: vec![diagnostic],
         })
     }
@@ -147,7 +181,7 @@ impl Session {
         if fps > 0.0 && fps.is_finite() {
             return Ok(fps);
         }
-        let text = format!("`{}` renders {fps} frames per second", self.file.name);
+        let text = format!("`{}` renders {fps} frames per second", self.sources.root().name);
         Err(Failure::content(text).with_help("set `fps` of the render block to a number above 0"))
     }
 
@@ -161,7 +195,7 @@ impl Session {
             return Ok(field);
         }
         let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-        let failure = Failure::usage(format!("`{}` has no field `{name}`", self.file.name));
+        let failure = Failure::usage(format!("`{}` has no field `{name}`", self.sources.root().name));
         Err(match nearest(name, names.iter().copied()) {
             _ if names.is_empty() => failure.with_help("the scene has no fields"),
             Some(near) => {

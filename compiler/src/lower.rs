@@ -7,12 +7,13 @@
 //! | room | holds |
 //! |---|---|
 //! | `value` | what an expression can be at compile time |
-//! | `expr` | expressions to values |
+//! | `expr`, `keys` | expressions to values |
 //! | `shape`, `tube` | solids: distance, local coordinates, extent |
 //! | `optics` | materials and phase functions |
 //! | `scene` | blocks to the plan of the program |
 
 pub(crate) mod expr;
+mod keys;
 pub(crate) mod optics;
 mod scene;
 pub(crate) mod shape;
@@ -44,6 +45,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0407", "a number outside of what a function takes"),
     ("E0408", "a surface without a slope: a tube as an object"),
     ("E0501", "a displacement is not bounded"),
+    ("W0401", "a style does not change pictures yet"),
 ];
 
 /// What lowering an expression gives, or the message about why it cannot be.

@@ -1,5 +1,7 @@
 //! The untyped tree that the parser builds; spans everywhere.
 
+pub(crate) mod shift;
+
 use crate::source::Span;
 
 /// A name with its place.
@@ -32,6 +34,8 @@ pub struct Item {
 /// The kinds of items.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ItemKind {
+    /// `import "lib/clouds.vol" as clouds`
+    Import(Import),
     /// `param name: type = value in lo..hi`
     Param(Param),
     /// `let name = value`
@@ -40,6 +44,17 @@ pub enum ItemKind {
     Function(Function),
     /// `camera { … }`, `light sun { … }` and so on.
     Block(Block),
+}
+
+/// Another file's functions, values and params under a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Import {
+    /// The path as written, relative to this file.
+    pub path: String,
+    /// The path in its quotes.
+    pub path_span: Span,
+    /// The name before the dot in `clouds.puff(…)`.
+    pub alias: Name,
 }
 
 /// A value set from outside.
@@ -156,6 +171,8 @@ pub enum ExprKind {
     Name(String),
     /// `(x, y)`, `(x, y, z)`, `(x, y, z, w)`
     Tuple(Vec<Expr>),
+    /// `(at: (1, 2, 0), #ffffff)`; legal only where settings of a style ask for it.
+    NamedTuple(Vec<Argument>),
     /// `[a, b]`
     List(Vec<Expr>),
     /// `[for i in range: body]`
@@ -187,6 +204,34 @@ pub enum ExprKind {
     Field(Box<Expr>, Name),
     /// `{ key: value, … }` as a value (nested settings of a style).
     Record(Vec<Entry>),
+    /// `iterate n from (z = p) while condition: (z = z * z)`
+    Iterate(Box<Iterate>),
+    /// `keys(time, 0s: a, 2s: b, ease: smooth)`
+    Keys(Box<Keys>),
+}
+
+/// The bounded loop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Iterate {
+    /// Most steps.
+    pub count: Expr,
+    /// Names and first values of the state.
+    pub state: Vec<Let>,
+    /// Asked before each step; the loop ends where it is false.
+    pub condition: Option<Expr>,
+    /// The next values, from the old ones.
+    pub next: Vec<Let>,
+}
+
+/// A key-framed value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keys {
+    /// What runs along the keys, mostly `time`.
+    pub at: Expr,
+    /// Places and the values there, in order.
+    pub keys: Vec<(Expr, Expr)>,
+    /// How the value goes from key to key: a word or a function.
+    pub ease: Option<Expr>,
 }
 
 /// An argument of a call.

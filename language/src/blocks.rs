@@ -1,5 +1,6 @@
 //! The keys of the scene's blocks: names, types and defaults in one table.
 
+use crate::settings::{ChoiceKind, SettingsKind};
 use crate::ty::Type;
 
 /// The kinds of blocks.
@@ -13,13 +14,21 @@ pub enum BlockKind {
     Object,
     /// A participating medium in a region.
     Medium,
+    /// How single scattering of one light is styled (Kol et al. 2016).
+    Style,
     /// Size, background and timing of the picture; at most one.
     Render,
 }
 
 /// All kinds, in the order in which messages list them.
-pub const BLOCK_KINDS: [BlockKind; 5] =
-    [BlockKind::Camera, BlockKind::Light, BlockKind::Object, BlockKind::Medium, BlockKind::Render];
+pub const BLOCK_KINDS: [BlockKind; 6] = [
+    BlockKind::Camera,
+    BlockKind::Light,
+    BlockKind::Object,
+    BlockKind::Medium,
+    BlockKind::Style,
+    BlockKind::Render,
+];
 
 impl BlockKind {
     /// The keyword.
@@ -30,6 +39,7 @@ impl BlockKind {
             Self::Light => "light",
             Self::Object => "object",
             Self::Medium => "medium",
+            Self::Style => "style",
             Self::Render => "render",
         }
     }
@@ -37,7 +47,7 @@ impl BlockKind {
     /// Whether blocks of this kind carry a name of their own.
     #[must_use]
     pub fn is_named(self) -> bool {
-        matches!(self, Self::Light | Self::Object | Self::Medium)
+        matches!(self, Self::Light | Self::Object | Self::Medium | Self::Style)
     }
 
     /// The keys that this kind takes.
@@ -48,6 +58,7 @@ impl BlockKind {
             Self::Light => light(),
             Self::Object => object(),
             Self::Medium => medium(),
+            Self::Style => style(),
             Self::Render => render(),
         }
     }
@@ -66,11 +77,11 @@ pub struct Key {
     pub doc: &'static str,
 }
 
-fn key(name: &'static str, ty: Type, doc: &'static str) -> Key {
+pub(crate) fn key(name: &'static str, ty: Type, doc: &'static str) -> Key {
     Key { name, ty, required: false, doc }
 }
 
-fn required(name: &'static str, ty: Type, doc: &'static str) -> Key {
+pub(crate) fn required(name: &'static str, ty: Type, doc: &'static str) -> Key {
     Key { name, ty, required: true, doc }
 }
 
@@ -121,8 +132,30 @@ fn medium() -> Vec<Key> {
         key("absorb", of_local(Type::Color), "absorption coefficient per unit density and length; default 0"),
         key("emit", of_local(Type::Color), "emitted radiance per unit density and length; default 0"),
         key("phase", Type::Phase, "phase function; default isotropic()"),
-        key("lighting", Type::String, "\"none\", \"unshadowed\" or \"shadowed\"; default \"shadowed\""),
+        key("lighting", Type::Choice(ChoiceKind::Lighting), "how light reaches it; default shadowed"),
         key("when", Type::Bool, "whether the medium is there; default true"),
+    ]
+}
+
+fn style() -> Vec<Key> {
+    vec![
+        required("light", Type::Block(BlockKind::Light), "the light whose shafts are styled"),
+        key("shadow_map", Type::Int, "width and height of the shadow map in texels; default 1024"),
+        key("fill_holes", Type::Choice(ChoiceKind::HoleFilling), "closes holes of the occluders"),
+        key("enhance_silhouettes", Type::Float, "length of the epipolar dilation in texels; default 0"),
+        key("make_holes", Type::Settings(SettingsKind::Holes), "holes cut into the occluders by noise"),
+        key(
+            "transfer",
+            Type::list(Type::Choice(ChoiceKind::Layer)),
+            "layers over average visibility (x) and linear depth (y)",
+        ),
+        key("light_map", Type::Choice(ChoiceKind::LightMap), "strokes that light shafts are fitted to"),
+        key(
+            "heterogeneity",
+            Type::Settings(SettingsKind::Heterogeneity),
+            "variation painted into the medium",
+        ),
+        key("when", Type::Bool, "whether the style is on; default true"),
     ]
 }
 

@@ -1,10 +1,10 @@
 //! Checking: an untyped file in, a typed scene and all its mistakes out.
 //!
 //! ```text
-//! ast::File ──names──► uses ──order──► items in dependency order ──► hir::Scene, diagnostics
+//! modules ──names──► uses ──order──► items in dependency order ──► hir::Scene, diagnostics
 //! ```
 //!
-//! Comes in: the tree that the parser built, and the compiler's [`Library`]. Goes out: a
+//! Comes in: the trees that the parser built, and the compiler's [`Library`]. Goes out: a
 //! [`hir::Scene`] in which every name is resolved, every expression typed and every conversion
 //! written out. A wrong expression becomes [`hir::ExprKind::Error`] of [`Type::Error`], which
 //! silences follow-ups, so that all mistakes of a file come in one run.
@@ -16,6 +16,7 @@ mod arguments;
 mod block;
 mod block_rules;
 mod call;
+mod choice;
 mod codes;
 mod constant;
 mod construct;
@@ -24,6 +25,8 @@ mod expr;
 mod field;
 mod function;
 mod item;
+mod iterate;
+mod keys;
 mod mismatch;
 mod names;
 mod operator;
@@ -38,11 +41,14 @@ mod words;
 
 pub use codes::CODES;
 
-use crate::ast::{self, ItemKind};
+use crate::ast::ItemKind;
+use crate::blocks::BlockKind;
 use crate::diag::Diagnostic;
-use crate::hir::{self, Expr, ExprId, ExprKind};
+use crate::hir::{self, Expr, ExprId, ExprKind, FunctionId};
 use crate::library::{BuiltinId, Library};
+use crate::module::{Module, ModuleId};
 use crate::source::Span;
+use crate::standard;
 use crate::ty::Type;
 use constant::Constant;
 use item::Global;
@@ -62,16 +68,21 @@ const MAX_COMPARISONS: usize = 1_000_000;
 /// Names that stand for values and cannot be redefined anywhere.
 const BUILT_IN_VALUES: [&str; 4] = ["time", "frame", "pi", "tau"];
 
-/// Checks a parsed file.
+/// Checks the files of a scene; the first is its own.
 ///
-/// The scene can be used if no diagnostic is an error.
+/// Only blocks of the scene's own file count. The scene can be used if no diagnostic is an error.
 #[must_use]
-pub fn check(file: &ast::File, library: &Library) -> (hir::Scene, Vec<Diagnostic>) {
-    let mut checker = Checker::new(library);
-    checker.declare(file);
-    let uses = names::uses(file, &checker.globals, checker.items.len());
+pub fn check(modules: &[Module], library: &Library) -> (hir::Scene, Vec<Diagnostic>) {
+    let own = library.signatures.len();
+    let library = standard::extended(library);
+    let mut checker = Checker::new(modules, &library, own);
+    for index in 0..modules.len() {
+        checker.declare(index);
+    }
+    let uses = names::uses(modules, &checker.globals, checker.items.len());
     checker.diagnostics.extend(uses.warnings);
     checker.warn_unused(&uses.used);
+    checker.check_library(&uses.library);
     let (order, cycles) = order::sort(&uses.edges);
     for cycle in &cycles {
         checker.report_cycle(cycle);
@@ -79,24 +90,36 @@ pub fn check(file: &ast::File, library: &Library) -> (hir::Scene, Vec<Diagnostic
     for index in order {
         checker.check_item(index);
     }
-    let blocks = file.items.iter().filter_map(|item| match &item.kind {
+    let root = modules.iter().take(1).flat_map(|module| &module.file.items);
+    let blocks = root.filter_map(|item| match &item.kind {
         ItemKind::Block(block) => Some(block),
-        ItemKind::Param(_) | ItemKind::Let(_) | ItemKind::Function(_) => None,
+        ItemKind::Import(_) | ItemKind::Param(_) | ItemKind::Let(_) | ItemKind::Function(_) => None,
     });
+    checker.module = ModuleId::ROOT;
     checker.check_blocks(blocks);
     checker.scene.local_count = checker.scope.count();
     (checker.scene, checker.diagnostics)
 }
 
-/// What is known while a file is checked.
+/// What is known while a scene is checked.
 struct Checker<'a> {
+    modules: &'a [Module],
+    /// The compiler's functions, then those of the standard library.
     library: &'a Library,
+    /// How many of them are the compiler's.
+    own: usize,
+    /// The functions of the standard library that the scene uses, by their place in it.
+    standard: Vec<Option<FunctionId>>,
+    /// The file whose names are visible.
+    module: ModuleId,
     /// Overloads by name.
     builtins: HashMap<&'a str, Vec<BuiltinId>>,
-    /// The file's params, lets and functions in source order, duplicates included.
+    /// The params, lets and functions of all files in order, duplicates included.
     items: Vec<Global<'a>>,
-    /// The first item of each name, by index.
-    globals: HashMap<&'a str, usize>,
+    /// For each file the first item of each name, by index.
+    globals: Vec<HashMap<&'a str, usize>>,
+    /// The blocks of the scene's own file that have a name.
+    block_names: HashMap<&'a str, BlockKind>,
     scope: Scope<'a>,
     scene: hir::Scene,
     /// Value of each expression of the scene that is known at compile time.
@@ -108,16 +131,21 @@ struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    fn new(library: &'a Library) -> Self {
+    fn new(modules: &'a [Module], library: &'a Library, own: usize) -> Self {
         let mut builtins: HashMap<&'a str, Vec<BuiltinId>> = HashMap::new();
         for (i, signature) in library.signatures.iter().enumerate() {
             builtins.entry(signature.name).or_default().push(BuiltinId(i as u32));
         }
         Self {
+            modules,
             library,
+            own,
+            standard: vec![None; library.signatures.len() - own],
+            module: ModuleId::ROOT,
             builtins,
             items: Vec::new(),
-            globals: HashMap::new(),
+            globals: Vec::new(),
+            block_names: HashMap::new(),
             scope: Scope::default(),
             scene: hir::Scene::default(),
             constants: Vec::new(),

@@ -8,6 +8,7 @@
 use crate::ast::{BinaryOp, UnaryOp};
 use crate::blocks::BlockKind;
 use crate::library::BuiltinId;
+use crate::module::ModuleId;
 use crate::source::Span;
 use crate::ty::Type;
 
@@ -113,6 +114,8 @@ pub struct Function {
     pub body: ExprId,
     /// Where it is declared.
     pub span: Span,
+    /// The file that declares it.
+    pub module: ModuleId,
 }
 
 /// A scene block with its values converted to the types of [`crate::blocks`].
@@ -201,10 +204,60 @@ pub enum ExprKind {
         /// Built once per element.
         body: ExprId,
     },
+    /// A bounded loop; its value is the record of the last state.
+    Iterate(Box<Iterate>),
+    /// A field of a record by index.
+    RecordField(ExprId, u32),
+    /// A key-framed value.
+    Keys(Box<Keys>),
+    /// One of the words of its type's choice, with one value per parameter where given.
+    Choice(&'static str, Vec<Option<ExprId>>),
+    /// A block by its name.
+    BlockName(String),
+    /// Given keys of the type's settings.
+    Settings(Vec<(&'static str, ExprId)>),
     /// A conversion that the checker inserted.
     Convert(Conversion, ExprId),
     /// Already reported.
     Error,
+}
+
+/// The loop `iterate count from (state) while condition: (next)`.
+#[derive(Clone, Debug)]
+pub struct Iterate {
+    /// Most steps, an int.
+    pub count: ExprId,
+    /// Bindings of the state, which `condition` and `next` see, with their first values: numbers,
+    /// truth values, vectors or colours.
+    pub state: Vec<(LocalId, ExprId)>,
+    /// Asked before each step, a bool; the loop ends where it is false.
+    pub condition: Option<ExprId>,
+    /// Next values in the order of the state and of its types, from the old ones.
+    pub next: Vec<ExprId>,
+}
+
+/// `keys(at, place: value, …, ease: …)`; before the first and after the last key the value stays.
+#[derive(Clone, Debug)]
+pub struct Keys {
+    /// What runs along the keys, a float.
+    pub at: ExprId,
+    /// Places, each above the one before, and the values there, all of one type; at least one.
+    pub keys: Vec<(f64, ExprId)>,
+    /// From key to key.
+    pub ease: Ease,
+}
+
+/// How a key-framed value goes from one key to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ease {
+    /// In proportion.
+    Linear,
+    /// Slow at both keys: `3 u^2 - 2 u^3`.
+    Smooth,
+    /// The value of the key before.
+    Hold,
+    /// By a function from 0..1 to the share of the next key.
+    Curve(ExprId),
 }
 
 /// What a comprehension walks.

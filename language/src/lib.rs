@@ -16,29 +16,51 @@ pub mod check;
 pub mod diag;
 pub mod hir;
 pub mod library;
+pub mod module;
 pub mod nearest;
 pub mod parse;
+pub mod settings;
 pub mod source;
+pub mod standard;
 pub mod ty;
 
 use diag::Diagnostic;
 use library::Library;
-use source::SourceFile;
+use module::{Loaded, Loader, NoFiles};
+use source::{SourceFile, Sources};
 
 /// Codes that a lost item causes elsewhere: names that only it defines, and all that is then missing.
-const FOLLOW_UPS: [&str; 4] = ["E0201", "E0304", "E0308", "E0313"];
+const FOLLOW_UPS: [&str; 5] = ["E0201", "E0304", "E0308", "E0313", "E0605"];
 
 /// Warnings about unused names; beside an error they may only say that a use of the name is wrong.
 const UNUSED: [&str; 4] = ["W0101", "W0102", "W0103", "W0104"];
 
-/// Parses and checks one file.
+/// A scene that was parsed and checked.
+#[derive(Debug)]
+pub struct Analysis {
+    /// Present whenever the scene is free of errors.
+    pub scene: Option<hir::Scene>,
+    /// Mistakes and warnings in the order of their places.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The texts in which their places lie.
+    pub sources: Sources,
+}
+
+/// Parses and checks a text that imports nothing; see [`analyse_with`].
+#[must_use]
+pub fn analyse(file: &SourceFile, library: &Library) -> (Option<hir::Scene>, Vec<Diagnostic>) {
+    let Analysis { scene, diagnostics, .. } = analyse_with(file.clone(), library, &NoFiles);
+    (scene, diagnostics)
+}
+
+/// Parses and checks a scene's own file and the files that it imports.
 ///
 /// The scene is present whenever it is free of errors; warnings may stand beside it. An item with a
 /// syntax error is left out of the check, and messages that only its absence causes are dropped.
 #[must_use]
-pub fn analyse(file: &SourceFile, library: &Library) -> (Option<hir::Scene>, Vec<Diagnostic>) {
-    let (ast, mut diagnostics) = parse::parse(file);
-    let (scene, mut found) = check::check(&ast, library);
+pub fn analyse_with(file: SourceFile, library: &Library, loader: &dyn Loader) -> Analysis {
+    let Loaded { sources, modules, mut diagnostics } = module::load(file, loader);
+    let (scene, mut found) = check::check(&modules, library);
     if diagnostics.iter().any(Diagnostic::is_error) {
         found.retain(|diagnostic| !FOLLOW_UPS.contains(&diagnostic.code));
     }
@@ -48,5 +70,5 @@ pub fn analyse(file: &SourceFile, library: &Library) -> (Option<hir::Scene>, Vec
     if failed {
         diagnostics.retain(|diagnostic| !UNUSED.contains(&diagnostic.code));
     }
-    ((!failed).then_some(scene), diagnostics)
+    Analysis { scene: (!failed).then_some(scene), diagnostics, sources }
 }

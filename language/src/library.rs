@@ -18,6 +18,8 @@ pub enum DefaultValue {
     Number(f64),
     /// This truth value.
     Bool(bool),
+    /// This word of the parameter's choice.
+    Word(&'static str),
 }
 
 /// One parameter of a built-in function.

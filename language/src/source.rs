@@ -21,6 +21,18 @@ impl Span {
         Self { start: start as u32, end: end as u32 }
     }
 
+    /// The span moved towards the end by `bytes`.
+    #[must_use]
+    pub fn shifted(self, bytes: u32) -> Self {
+        Self { start: self.start.saturating_add(bytes), end: self.end.saturating_add(bytes) }
+    }
+
+    /// The span moved towards the start by `bytes`.
+    #[must_use]
+    pub fn back(self, bytes: u32) -> Self {
+        Self { start: self.start.saturating_sub(bytes), end: self.end.saturating_sub(bytes) }
+    }
+
     /// The smallest span that covers both.
     #[must_use]
     pub fn to(self, other: Self) -> Self {
@@ -35,6 +47,61 @@ pub struct SourceFile {
     pub name: String,
     /// The text, strict UTF-8.
     pub text: String,
+}
+
+/// The texts of a scene: its own file and those that it imports, end to end in one space of bytes.
+///
+/// Spans of the scene's own file are those of its text; spans of the file at index `i` are shifted by
+/// [`Sources::start`] of `i`. Spans from [`crate::standard::START`] on lie in the standard library.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    files: Vec<SourceFile>,
+    starts: Vec<u32>,
+}
+
+impl From<SourceFile> for Sources {
+    fn from(root: SourceFile) -> Self {
+        Self { files: vec![root], starts: vec![0] }
+    }
+}
+
+impl Sources {
+    /// Adds a file; returns its index.
+    pub fn add(&mut self, file: SourceFile) -> usize {
+        let (last, start) = (&self.files[self.files.len() - 1], self.starts[self.starts.len() - 1]);
+        // One byte between files, so that the end of one is not the start of the next.
+        self.starts.push(start.saturating_add(last.text.len() as u32).saturating_add(1));
+        self.files.push(file);
+        self.files.len() - 1
+    }
+
+    /// The scene's own file.
+    #[must_use]
+    pub fn root(&self) -> &SourceFile {
+        &self.files[0]
+    }
+
+    /// All files, the scene's own first.
+    #[must_use]
+    pub fn files(&self) -> &[SourceFile] {
+        &self.files
+    }
+
+    /// Offset of the first byte of file `index`.
+    #[must_use]
+    pub fn start(&self, index: usize) -> u32 {
+        self.starts[index]
+    }
+
+    /// The file that a span lies in, and the span in that file's text.
+    #[must_use]
+    pub fn locate(&self, span: Span) -> (&SourceFile, Span) {
+        if span.start >= crate::standard::START {
+            return (crate::standard::file(), span.back(crate::standard::START));
+        }
+        let index = self.starts.partition_point(|&start| start <= span.start).max(1) - 1;
+        (&self.files[index], span.back(self.starts[index]))
+    }
 }
 
 /// Why bytes are not a scene text.

@@ -1,5 +1,7 @@
 //! The types of the language.
 
+use crate::blocks::BlockKind;
+use crate::settings::{ChoiceKind, SettingsKind};
 use std::fmt;
 
 /// The type of an expression.
@@ -37,8 +39,25 @@ pub enum Type {
     Phase,
     /// The point that a medium's or material's function is asked about (`q`).
     Local,
+    /// The state of a finished loop: values with names.
+    Record(Box<RecordType>),
+    /// A picture file, given as a text.
+    Image,
+    /// A block of the scene by its name.
+    Block(BlockKind),
+    /// One of a few words, some with arguments; see [`crate::settings`].
+    Choice(ChoiceKind),
+    /// `{ key: value, … }`; see [`crate::settings`].
+    Settings(SettingsKind),
     /// Stands for an expression already reported as wrong; silences follow-up errors.
     Error,
+}
+
+/// The fields of a record in order.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct RecordType {
+    /// Names and types; the names differ.
+    pub fields: Vec<(String, Type)>,
 }
 
 /// Parameters and result of a function value.
@@ -66,6 +85,39 @@ impl Type {
         Self::List(Box::new(element))
     }
 
+    /// The types that can be written by name, in the order in which messages list them.
+    #[must_use]
+    pub fn all_named() -> [Self; 20] {
+        [
+            Self::Bool,
+            Self::Int,
+            Self::Float,
+            Self::Angle,
+            Self::Vec2,
+            Self::Vec3,
+            Self::Vec4,
+            Self::Color,
+            Self::String,
+            Self::Shape,
+            Self::Curve,
+            Self::Material,
+            Self::Phase,
+            Self::Local,
+            Self::Image,
+            Self::Block(BlockKind::Camera),
+            Self::Block(BlockKind::Light),
+            Self::Block(BlockKind::Object),
+            Self::Block(BlockKind::Medium),
+            Self::Block(BlockKind::Style),
+        ]
+    }
+
+    /// The type with this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all_named().into_iter().find(|ty| ty.to_string() == name)
+    }
+
     /// Number of scalar components of a number, vector or colour; `None` for all else.
     #[must_use]
     pub fn components(&self) -> Option<usize> {
@@ -82,6 +134,11 @@ impl Type {
             | Self::Material
             | Self::Phase
             | Self::Local
+            | Self::Record(_)
+            | Self::Image
+            | Self::Block(_)
+            | Self::Choice(_)
+            | Self::Settings(_)
             | Self::Error => None,
         }
     }
@@ -115,6 +172,15 @@ impl fmt::Display for Type {
             Self::Material => "material",
             Self::Phase => "phase",
             Self::Local => "local",
+            Self::Record(record) => {
+                let fields: Vec<String> =
+                    record.fields.iter().map(|(name, ty)| format!("{name}: {ty}")).collect();
+                return write!(f, "({})", fields.join(", "));
+            }
+            Self::Image => "image",
+            Self::Block(kind) => kind.keyword(),
+            Self::Choice(kind) => kind.name(),
+            Self::Settings(kind) => kind.name(),
             Self::Error => "unknown",
         };
         f.write_str(name)

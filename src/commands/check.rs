@@ -7,7 +7,7 @@ use vol::failure::Failure;
 use vol::session::{self, Session};
 use vol_compiler::program::Program;
 use vol_language::diag::{self, Diagnostic};
-use vol_language::source::SourceFile;
+use vol_language::source::Sources;
 
 use crate::cli::{self, MessageFormat};
 
@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
 fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {
     match session::load(path).and_then(with_first_frame) {
         Ok(session) => {
-            report(&session.file, &session.warnings, format)?;
+            report(&session.sources, &session.warnings, format)?;
             if format == MessageFormat::Human {
                 super::print_line(&format!("{}: {}", path.display(), summary(&session.program)));
                 for note in &session.program.report {
@@ -39,8 +39,8 @@ fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {
             }
             Ok(())
         }
-        Err(Failure::Scene { file, diagnostics }) => {
-            report(&file, &diagnostics, format)?;
+        Err(Failure::Scene { sources, diagnostics }) => {
+            report(&sources, &diagnostics, format)?;
             if format == MessageFormat::Human {
                 super::print_line(&format!("{}: {}", path.display(), tally(&diagnostics)));
             }
@@ -56,22 +56,22 @@ fn with_first_frame(mut session: Session) -> Result<Session, Failure> {
     let moment = session.moment_at(&params, 0.0)?;
     match session.frame(&params, moment, session.program.render.size) {
         Ok(_) => Ok(session),
-        Err(Failure::Scene { file, diagnostics }) => {
+        Err(Failure::Scene { sources, diagnostics }) => {
             session.warnings.extend(diagnostics);
-            Err(Failure::Scene { file, diagnostics: session.warnings })
+            Err(Failure::Scene { sources, diagnostics: session.warnings })
         }
         Err(other) => Err(other),
     }
 }
 
-fn report(file: &SourceFile, diagnostics: &[Diagnostic], format: MessageFormat) -> Result<(), Failure> {
+fn report(sources: &Sources, diagnostics: &[Diagnostic], format: MessageFormat) -> Result<(), Failure> {
     match format {
         MessageFormat::Human => {
-            super::print_diagnostics(file, diagnostics);
+            super::print_diagnostics(sources, diagnostics);
             Ok(())
         }
         MessageFormat::Json => {
-            let text = diag::render::json(file, diagnostics);
+            let text = diag::render::json(sources, diagnostics);
             let written = io::stdout().write_all(text.as_bytes());
             written.map_err(|error| Failure::stdout(&error))
         }

@@ -63,7 +63,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
     let session = &prepared.session;
     Stats {
         version: env!("CARGO_PKG_VERSION"),
-        scene: session.file.name.clone(),
+        scene: session.sources.root().name.clone(),
         backend: device.name(),
         device: device.description(),
         size: arguments.size.map_or(session.program.render.size, |Size(size)| size),

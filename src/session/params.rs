@@ -7,6 +7,7 @@ use vol_compiler::library;
 use vol_compiler::program::Param;
 use vol_language::diag::Diagnostic;
 use vol_language::hir;
+use vol_language::module::Module;
 use vol_language::nearest::nearest;
 use vol_language::source::SourceFile;
 use vol_language::ty::Type;
@@ -43,10 +44,11 @@ fn value(param: &Param, text: &str) -> Result<Vec<f64>, Failure> {
         let help = format!("`{name}` is of type {ty}, for example -D '{name}={}'", show(ty, default));
         Failure::usage(format!("cannot set `{name}` to `{text}`: {why}")).with_help(help)
     };
-    let line = format!("param {}: {} = {text}\n", param.name, param.ty);
+    // Params of imported files have a dot in their names.
+    let line = format!("param _given: {} = {text}\n", param.ty);
     let file = SourceFile::new("-D", line);
     let (ast, mut diagnostics) = vol_language::parse::parse(&file);
-    let (scene, found) = vol_language::check::check(&ast, &library::library());
+    let (scene, found) = vol_language::check::check(&[Module::root(ast, "")], &library::library());
     diagnostics.extend(found);
     let is_error = |diagnostic: &&Diagnostic| diagnostic.is_error() && diagnostic.code != NOTHING_TO_DRAW;
     if let Some(error) = diagnostics.iter().find(is_error) {

@@ -51,7 +51,7 @@ pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>,
         diagnostics.push(diagnostic);
         program = None;
     }
-    (program, vol_language::diag::render::human(&file, &diagnostics, false))
+    (program, vol_language::diag::render::human(&file.into(), &diagnostics, false))
 }
 
 /// Compiles a file of the repository.

@@ -8,6 +8,7 @@ use std::rc::Rc;
 use vol_language::ast::{BinaryOp, UnaryOp};
 use vol_language::diag::Diagnostic;
 use vol_language::hir::{Conversion, ExprId, ExprKind, LocalField, LocalId, Over};
+use vol_language::module::ModuleId;
 use vol_language::source::Span;
 
 impl Lowerer<'_> {
@@ -71,7 +72,7 @@ impl Lowerer<'_> {
             })),
             ExprKind::CallFunction(function, args) => {
                 let args = self.all(args)?;
-                self.user_function(function.index(), args)?
+                self.user_function(function.index(), args, expr.span)?
             }
             ExprKind::CallBuiltin(builtin, args) => {
                 let args = self.all(args)?;
@@ -88,6 +89,15 @@ impl Lowerer<'_> {
                 let operand = self.expr(*operand)?;
                 convert(*conversion, operand, expr.ty.components().unwrap_or(1))
             }
+            ExprKind::Keys(keys) => self.keys(keys)?,
+            ExprKind::Iterate(_) | ExprKind::RecordField(..) => {
+                let message = "loops cannot be compiled yet";
+                return Err(Box::new(Diagnostic::error("E0405", message, expr.span, "a loop")));
+            }
+            // A word whose arguments matter belongs to a style, which is not lowered.
+            ExprKind::Choice(word, _) => Value::String((*word).into()),
+            ExprKind::BlockName(name) => Value::String(name.as_str().into()),
+            ExprKind::Settings(_) => unreachable!("only styles hold settings, and they are not lowered"),
             ExprKind::Error => unreachable!("a scene with errors is not lowered"),
         })
     }
@@ -270,7 +280,7 @@ impl Lowerer<'_> {
         Err(Box::new(diagnostic.with_help("change the number, or leave the shape out with the key `when`")))
     }
 
-    fn user_function(&mut self, index: usize, args: Vec<Value>) -> Lowered<Value> {
+    fn user_function(&mut self, index: usize, args: Vec<Value>, span: Span) -> Lowered<Value> {
         let function = &self.hir.functions[index];
         let params: Vec<LocalId> = function.params.iter().map(|&(local, _)| local).collect();
         let outer = self.environment.clone();
@@ -279,6 +289,14 @@ impl Lowerer<'_> {
         }
         let value = self.expr(function.body);
         self.environment = outer;
+        if function.module == ModuleId::LIBRARY {
+            // The author sees the call, not the library's text.
+            return value.map_err(|mut diagnostic| {
+                diagnostic.labels.truncate(1);
+                diagnostic.labels.iter_mut().for_each(|label| label.span = span);
+                diagnostic
+            });
+        }
         value
     }
 

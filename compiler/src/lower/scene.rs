@@ -9,7 +9,9 @@ use crate::ops::Op;
 use crate::program::{Camera, Field, Light, LightKind, Lighting, Medium, Object, Render, Slot, Slot3};
 use std::rc::Rc;
 use vol_language::blocks::BlockKind;
+use vol_language::diag::Diagnostic;
 use vol_language::hir::{Block, ExprId};
+use vol_language::module::ModuleId;
 use vol_language::source::Span;
 use vol_language::ty::Type;
 
@@ -66,6 +68,7 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
                 let medium = medium(lowerer, block, &mut plan);
                 plan.media.extend(keep(lowerer, medium));
             }
+            BlockKind::Style => lowerer.report(idle_style(block)),
             BlockKind::Camera | BlockKind::Render => {}
         }
     }
@@ -74,6 +77,13 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
     }
     function_fields(lowerer, &mut plan.fields);
     Some(plan)
+}
+
+/// Styles are checked in full, but nothing renders them.
+fn idle_style(block: &Block) -> Diagnostic {
+    let message = format!("the style `{}` does not change the picture yet", block.name);
+    Diagnostic::warning("W0401", message, block.span, "checked, but not rendered")
+        .with_help("the scene renders as if the style were off")
 }
 
 fn keep<T>(lowerer: &mut Lowerer<'_>, lowered: Lowered<T>) -> Option<T> {
@@ -328,7 +338,8 @@ fn lighting(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Lighting> {
 
 /// Top-level functions of one position become fields that can be asked for by name.
 fn function_fields(lowerer: &mut Lowerer<'_>, fields: &mut Vec<Field>) {
-    for function in &lowerer.hir.functions {
+    let own = lowerer.hir.functions.iter().filter(|function| function.module == ModuleId::ROOT);
+    for function in own {
         let [(local, Type::Vec3)] = function.params[..] else { continue };
         if function.result.components().is_none() {
             continue;

@@ -2,16 +2,13 @@
 
 use super::Checker;
 use super::convert::Role;
-use crate::ast::{self, Entry, Expr, ExprKind, Name};
+use crate::ast::{self, Entry, ExprKind, Name};
 use crate::blocks::{BLOCK_KINDS, BlockKind, Key};
 use crate::diag::Diagnostic;
 use crate::hir::{self, ExprId};
 use crate::source::Span;
 use crate::ty::Type;
 use std::collections::HashMap;
-
-/// What the values of `lighting` may be.
-pub(super) const LIGHTINGS: [&str; 3] = ["none", "unshadowed", "shadowed"];
 
 impl<'a> Checker<'a> {
     /// Checks all blocks, in source order.
@@ -98,10 +95,11 @@ impl<'a> Checker<'a> {
         let mut entries = Vec::with_capacity(block.entries.len());
         for entry in &block.entries {
             let Some(key) = keys.iter().find(|key| key.name == entry.key.text) else {
-                self.report_key(entry, kind, &keys);
+                let article = if kind == BlockKind::Object { "an" } else { "a" };
+                self.report_key(entry, &format!("{article} {} has", kind.keyword()), &keys);
                 continue;
             };
-            let value = self.entry(&entry.value, key);
+            let value = self.expect(&entry.value, &key.ty, Role::Key(key.name));
             match seen.get(key.name) {
                 Some(&first) => self.report_key_twice(&entry.key, first),
                 None => {
@@ -126,34 +124,15 @@ impl<'a> Checker<'a> {
         self.scene.blocks.push(block);
     }
 
-    fn entry(&mut self, value: &'a Expr, key: &Key) -> ExprId {
-        if key.name == "lighting"
-            && let ExprKind::Name(word) = &value.kind
-            && LIGHTINGS.contains(&word.as_str())
-            && self.scope.find(word).is_none()
-            && !self.globals.contains_key(word.as_str())
-        {
-            let error = Diagnostic::error(
-                "E0310",
-                "the value of `lighting` must be a text",
-                value.span,
-                "not in quotes",
-            );
-            self.report(error.with_help(format!("write `lighting: \"{word}\"`")));
-            return self.wrong(value.span);
-        }
-        self.expect(value, &key.ty, Role::Key(key.name))
-    }
-
-    fn report_key(&mut self, entry: &'a Entry, kind: BlockKind, keys: &[Key]) {
+    /// Reports a key that `owner` ("a camera has") does not take.
+    pub(super) fn report_key(&mut self, entry: &'a Entry, owner: &str, keys: &[Key]) {
         let text = &entry.key.text;
         let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
         let help = match self.suggest(text, |_| known.clone()) {
             Some(near) => format!("did you mean `{near}`"),
             None => format!("the keys are `{}`", known.join("`, `")),
         };
-        let article = if kind == BlockKind::Object { "an" } else { "a" };
-        let message = format!("{article} {} has no key `{text}`", kind.keyword());
+        let message = format!("{owner} no key `{text}`");
         self.report(Diagnostic::error("E0302", message, entry.key.span, "no such key").with_help(help));
         // The value may have mistakes of its own, unless only its key could say what it is.
         if !self.is_deferred(&entry.value) && !matches!(entry.value.kind, ExprKind::Record(_)) {
@@ -161,7 +140,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn report_key_twice(&mut self, key: &Name, first: Span) {
+    pub(super) fn report_key_twice(&mut self, key: &Name, first: Span) {
         let message = format!("`{}` is given twice", key.text);
         let error = Diagnostic::error("E0303", message, key.span, "given again here");
         self.report(error.with_label(first, "first given here").with_help("remove one of them"));

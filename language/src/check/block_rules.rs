@@ -3,11 +3,10 @@
 //! Values that are not known at compile time are let through where the language allows them.
 
 use super::Checker;
-use super::block::LIGHTINGS;
 use super::constant::{Constant, is_zero};
 use crate::blocks::BlockKind;
 use crate::diag::Diagnostic;
-use crate::hir::{Block, ExprId, ExprKind};
+use crate::hir::{Block, ExprId};
 use std::f64::consts::PI;
 
 /// Largest width and height of a picture, in pixels.
@@ -25,8 +24,7 @@ impl Checker<'_> {
                 self.check_place(block);
                 self.check_direction(block);
             }
-            BlockKind::Object => {}
-            BlockKind::Medium => self.check_lighting(block),
+            BlockKind::Object | BlockKind::Medium | BlockKind::Style => {}
             BlockKind::Render => {
                 self.check_size(block);
                 self.check_timing(block, "duration", "at least 0", |value| value >= 0.0);
@@ -92,21 +90,6 @@ impl Checker<'_> {
             let error = Diagnostic::error("E0309", message, self.span(from), "this is zero");
             self.report(error.with_help("write `from: (0, 1, 0)` for light from above"));
         }
-    }
-
-    fn check_lighting(&mut self, block: &Block) {
-        let Some(entry) = self.sound_entry(block, "lighting") else { return };
-        let mut value = entry;
-        while let ExprKind::Let(id) = self.scene.expr(value).kind {
-            value = self.scene.lets[id.index()].value;
-        }
-        let (message, label) = match &self.scene.expr(value).kind {
-            ExprKind::String(text) if LIGHTINGS.contains(&text.as_str()) => return,
-            ExprKind::String(text) => (format!("there is no lighting `{text}`"), "no such lighting"),
-            _ => ("the value of `lighting` must be one of three texts".to_owned(), "not a plain text"),
-        };
-        let error = Diagnostic::error("E0310", message, self.span(entry), label);
-        self.report(error.with_help("write `\"none\"`, `\"unshadowed\"` or `\"shadowed\"`"));
     }
 
     fn check_size(&mut self, block: &Block) {

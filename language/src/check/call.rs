@@ -9,6 +9,8 @@ use super::words;
 use crate::ast::{Argument, Expr, Name};
 use crate::diag::Diagnostic;
 use crate::hir::{ExprId, ExprKind};
+use crate::library::BuiltinId;
+use crate::module::ModuleId;
 use crate::source::Span;
 use crate::ty::Type;
 use std::rc::Rc;
@@ -34,6 +36,11 @@ pub(super) enum Value<'a> {
 }
 
 impl<'a> Arg<'a> {
+    /// An argument without a name.
+    pub(super) fn unnamed(value: &'a Expr) -> Self {
+        Self { name: None, value: Value::Written(value), span: value.span }
+    }
+
     /// The arguments as written.
     pub(super) fn list(arguments: &'a [Argument]) -> Vec<Self> {
         let arg = |argument: &'a Argument| Self {
@@ -70,16 +77,8 @@ impl<'a> Checker<'a> {
                 let callee = self.name(name, name_span);
                 return self.call_value(callee, args, span);
             }
-        } else if let Some(&index) = self.globals.get(name) {
-            let Kind::Function { head, .. } = &self.items[index].kind else {
-                let callee = self.name(name, name_span);
-                return self.call_value(callee, args, span);
-            };
-            return match head.clone() {
-                Some(head) => self.call_function(&head, name_span, args, span),
-                // Part of a cycle; reported.
-                None => self.abandon(&args, span),
-            };
+        } else if let Some(index) = self.item_named(name) {
+            return self.call_item(name, index, name_span, args, span);
         }
         if construct::is_constructor(name) {
             return self.construct(name, name_span, args, span);
@@ -93,6 +92,52 @@ impl<'a> Checker<'a> {
         }
         self.unknown_function(name, name_span);
         self.abandon(&args, span)
+    }
+
+    /// A call of an item of this or an imported file.
+    fn call_item(
+        &mut self,
+        name: &str,
+        index: usize,
+        name_span: Span,
+        args: Vec<Arg<'a>>,
+        span: Span,
+    ) -> ExprId {
+        let Kind::Function { head, .. } = &self.items[index].kind else {
+            let callee = self.global(name, index, name_span);
+            return self.call_value(callee, args, span);
+        };
+        match head.clone() {
+            Some(head) => self.call_function(&head, name_span, args, span),
+            // Part of a cycle; reported.
+            None => self.abandon(&args, span),
+        }
+    }
+
+    /// `clouds.puff(arguments)`
+    pub(super) fn imported_call(
+        &mut self,
+        module: Option<ModuleId>,
+        name: &Name,
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> ExprId {
+        let args = Arg::list(arguments);
+        match module.and_then(|module| self.imported_item(module, name)) {
+            Some(index) => self.call_item(&name.text, index, name.span, args, span),
+            None => self.abandon(&args, span),
+        }
+    }
+
+    /// A call of a function of the library: the compiler's, or the standard library's.
+    pub(super) fn library_call(&self, id: BuiltinId, values: Vec<ExprId>) -> ExprKind {
+        let place = (id.0 as usize).checked_sub(self.own);
+        match place.map(|place| self.standard[place]) {
+            None => ExprKind::CallBuiltin(id, values),
+            Some(Some(function)) => ExprKind::CallFunction(function, values),
+            // Only where the library itself is wrong, which was then reported.
+            Some(None) => ExprKind::Error,
+        }
     }
 
     /// A call of a function value.
@@ -199,7 +244,7 @@ impl<'a> Checker<'a> {
 
     /// How a function is called, for help lines.
     pub(super) fn form_of(&self, name: &str) -> Option<String> {
-        if let Some(&index) = self.globals.get(name) {
+        if let Some(index) = self.item_named(name) {
             let Kind::Function { head, .. } = &self.items[index].kind else { return None };
             return head.as_ref().map(|head| words::head(head));
         }

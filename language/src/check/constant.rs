@@ -49,6 +49,12 @@ impl Checker<'_> {
             | ExprKind::CallValue(..)
             | ExprKind::List(_)
             | ExprKind::Comprehension { .. }
+            | ExprKind::Iterate(_)
+            | ExprKind::RecordField(..)
+            | ExprKind::Keys(_)
+            | ExprKind::Choice(..)
+            | ExprKind::BlockName(_)
+            | ExprKind::Settings(_)
             | ExprKind::Error => None,
         }
     }

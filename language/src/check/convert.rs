@@ -25,8 +25,16 @@ pub(super) enum Role<'a> {
     RangeOf(&'a str),
     /// An end of a range that is walked.
     RangeEnd,
-    /// The condition of an `if`.
+    /// The condition of an `if` or a loop.
     Condition,
+    /// The most steps of a loop.
+    Steps,
+    /// The next value of this part of a loop's state.
+    State(&'a str),
+    /// What runs along keys, or the place of a key.
+    Place,
+    /// The value of a key.
+    KeyValue,
     /// A component of a vector.
     Component,
     /// An argument of a function value.
@@ -45,6 +53,10 @@ impl fmt::Display for Role<'_> {
             Self::RangeOf(name) => write!(f, " in the range of `{name}`"),
             Self::RangeEnd => write!(f, " as an end of the range"),
             Self::Condition => write!(f, " as the condition"),
+            Self::Steps => write!(f, " as the number of steps"),
+            Self::State(name) => write!(f, " as the next value of `{name}`"),
+            Self::Place => write!(f, " as the place of a key"),
+            Self::KeyValue => write!(f, " as the value of a key"),
             Self::Component => write!(f, " as a component"),
             Self::Call => write!(f, " as an argument"),
             Self::Internal => Ok(()),
@@ -65,7 +77,7 @@ pub(super) fn cost(from: &Type, to: &Type) -> Option<u32> {
         return Some(0);
     }
     match (from, to) {
-        (Type::Int, Type::Float) => Some(WIDEN),
+        (Type::Int, Type::Float) | (Type::String, Type::Image) => Some(WIDEN),
         (Type::Vec3, Type::Color) | (Type::Color, Type::Vec3) => Some(RECOLOR),
         (Type::Float, to) if to.is_vector() => Some(BROADCAST),
         (Type::Int, to) if to.is_vector() => Some(WIDEN + BROADCAST),

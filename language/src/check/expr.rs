@@ -47,7 +47,10 @@ fn split(expr: &Expr) -> Option<(&Expr, Link<'_>)> {
         | ExprKind::Block(..)
         | ExprKind::Lambda(..)
         | ExprKind::Call(..)
-        | ExprKind::Record(_) => None,
+        | ExprKind::NamedTuple(_)
+        | ExprKind::Record(_)
+        | ExprKind::Iterate(_)
+        | ExprKind::Keys(_) => None,
     }
 }
 
@@ -60,7 +63,9 @@ impl<'a> Checker<'a> {
         // Walk down the left side, then type from the inside out.
         let mut chain = Vec::new();
         let mut head = expr;
-        while let Some((left, link)) = split(head) {
+        while let Some((left, link)) = split(head)
+            && self.import(left).is_none()
+        {
             chain.push((head.span, link));
             head = left;
         }
@@ -97,6 +102,14 @@ impl<'a> Checker<'a> {
             (ExprKind::Name(name), Type::Function(function)) => {
                 self.function_name(name, function, expr.span, role)
             }
+            (ExprKind::Field(..), Type::Function(function)) => match self.imported_function(expr) {
+                Some(index) => self.imported_function_value(index, function, expr.span, role),
+                None => self.wrong(expr.span),
+            },
+            (_, Type::Choice(kind)) if self.is_worded(expr, *kind) => self.choice(expr, *kind),
+            (ExprKind::Record(entries), Type::Settings(kind)) => self.settings(entries, *kind, expr.span),
+            (ExprKind::Name(name), Type::Block(kind)) => self.block_name(name, *kind, expr.span),
+            (ExprKind::Keys(keys), _) => self.keys(keys, Some((ty, role)), expr.span),
             (ExprKind::List(items), Type::List(element)) => {
                 let items = items.iter().map(|item| self.expect(item, element, role)).collect();
                 self.push(hir::ExprKind::List(items), ty.clone(), expr.span)
@@ -120,7 +133,15 @@ impl<'a> Checker<'a> {
     fn is_shaped_by(&self, expr: &Expr, ty: &Type) -> bool {
         match &expr.kind {
             ExprKind::Lambda(..) => true,
-            ExprKind::Name(name) => matches!(ty, Type::Function(_)) && self.is_function_name(name),
+            _ if matches!(ty, Type::Choice(kind) if self.is_worded(expr, *kind)) => true,
+            ExprKind::Name(name) => match ty {
+                Type::Function(_) => self.is_function_name(name),
+                Type::Block(_) => self.scope.find(name).is_none() && self.item_named(name).is_none(),
+                _ => false,
+            },
+            ExprKind::Field(..) => matches!(ty, Type::Function(_)) && self.imported_function(expr).is_some(),
+            ExprKind::Record(_) => matches!(ty, Type::Settings(_)),
+            ExprKind::Keys(_) => !matches!(ty, Type::Function(_) | Type::Error),
             ExprKind::List(_) | ExprKind::Comprehension { .. } => matches!(ty, Type::List(_)),
             ExprKind::If(..) | ExprKind::Block(..) => {
                 !matches!(ty, Type::Function(_) | Type::Error) || self.is_deferred(expr)
@@ -137,8 +158,8 @@ impl<'a> Checker<'a> {
             | ExprKind::Binary(..)
             | ExprKind::Call(..)
             | ExprKind::MethodCall(..)
-            | ExprKind::Field(..)
-            | ExprKind::Record(_) => false,
+            | ExprKind::NamedTuple(_)
+            | ExprKind::Iterate(_) => false,
         }
     }
 
@@ -173,8 +194,19 @@ impl<'a> Checker<'a> {
                 _ => self.wrong(span),
             },
             ExprKind::Record(_) => self.stray_record(span),
+            ExprKind::NamedTuple(arguments) => self.stray_names(arguments, span),
+            ExprKind::Iterate(iterate) => self.iterate(iterate, span),
+            ExprKind::Keys(keys) => self.keys(keys, None, span),
+            ExprKind::MethodCall(of, name, arguments) => match self.import(of) {
+                Some(module) => self.imported_call(module, name, arguments, span),
+                None => self.wrong(span),
+            },
+            ExprKind::Field(of, name) => match self.import(of) {
+                Some(module) => self.imported_value(module, name, span),
+                None => self.wrong(span),
+            },
             // `infer` has split these off.
-            ExprKind::Binary(..) | ExprKind::MethodCall(..) | ExprKind::Field(..) => self.wrong(span),
+            ExprKind::Binary(..) => self.wrong(span),
         }
     }
 

@@ -21,6 +21,12 @@ impl<'a> Checker<'a> {
                 return self.push(ExprKind::LocalField(of, field), ty, span);
             }
         }
+        if let Type::Record(record) = &ty
+            && let Some(index) = record.fields.iter().position(|(known, _)| *known == name.text)
+        {
+            let field = record.fields[index].1.clone();
+            return self.push(ExprKind::RecordField(of, index as u32), field, span);
+        }
         if let Some(indices) = components(&ty, &name.text) {
             let ty = picked(&ty, indices.len());
             return self.push(ExprKind::Swizzle(of, indices), ty, span);
@@ -39,6 +45,12 @@ impl<'a> Checker<'a> {
             format!("write `.local.{text}`, or `.world.{text}`")
         } else if *ty == Type::Local {
             let fields: Vec<&str> = LocalField::ALL.iter().map(|(_, known, _)| *known).collect();
+            match self.suggest(text, |_| fields.clone()) {
+                Some(near) => format!("did you mean `.{near}`"),
+                None => format!("it has `.{}`", fields.join("`, `.")),
+            }
+        } else if let Type::Record(record) = ty {
+            let fields: Vec<&str> = record.fields.iter().map(|(known, _)| known.as_str()).collect();
             match self.suggest(text, |_| fields.clone()) {
                 Some(near) => format!("did you mean `.{near}`"),
                 None => format!("it has `.{}`", fields.join("`, `.")),
@@ -75,6 +87,11 @@ fn letters(ty: &Type) -> Option<&'static str> {
         | Type::Material
         | Type::Phase
         | Type::Local
+        | Type::Record(_)
+        | Type::Image
+        | Type::Block(_)
+        | Type::Choice(_)
+        | Type::Settings(_)
         | Type::Error => None,
     }
 }

@@ -92,10 +92,18 @@ impl<'a> Checker<'a> {
         if self.scope.find(name).is_some() {
             return false;
         }
-        match self.globals.get(name) {
-            Some(&index) => matches!(self.items[index].kind, Kind::Function { .. }),
+        match self.item_named(name) {
+            Some(index) => matches!(self.items[index].kind, Kind::Function { .. }),
             None => self.builtins.contains_key(name),
         }
+    }
+
+    /// The function of an imported file that `clouds.puff` names, by the index of its item.
+    pub(super) fn imported_function(&self, expr: &Expr) -> Option<usize> {
+        let ExprKind::Field(of, name) = &expr.kind else { return None };
+        let module = self.import(of)??;
+        let index = *self.globals[module.0 as usize].get(name.text.as_str())?;
+        matches!(self.items[index].kind, Kind::Function { .. }).then_some(index)
     }
 
     /// Whether only the expected type can say what an expression is: lambdas, names of functions,
@@ -107,6 +115,8 @@ impl<'a> Checker<'a> {
                 ExprKind::Lambda(..) => return true,
                 // Inside a block the name may be bound to something else.
                 ExprKind::Name(name) if names && self.is_function_name(name) => return true,
+                ExprKind::Field(..) if self.imported_function(expr).is_some() => return true,
+                ExprKind::Field(..) => {}
                 ExprKind::List(items) if items.is_empty() => return true,
                 ExprKind::List(items) => rest.extend(items.iter().map(|item| (item, names))),
                 ExprKind::Comprehension { body, .. } => rest.push((body, false)),
@@ -125,8 +135,10 @@ impl<'a> Checker<'a> {
                 | ExprKind::Binary(..)
                 | ExprKind::Call(..)
                 | ExprKind::MethodCall(..)
-                | ExprKind::Field(..)
-                | ExprKind::Record(_) => {}
+                | ExprKind::NamedTuple(_)
+                | ExprKind::Record(_)
+                | ExprKind::Iterate(_)
+                | ExprKind::Keys(_) => {}
             }
         }
         false
@@ -140,6 +152,12 @@ impl<'a> Checker<'a> {
                 (params.len() <= to.params.len()).then_some(0)
             }
             (ExprKind::Name(name), Type::Function(to)) => self.named_callee(name, to).map(|(_, cost)| cost),
+            (ExprKind::Field(..), Type::Function(to)) => {
+                let index = self.imported_function(expr)?;
+                self.item_callee(index, to).map(|(_, cost)| cost)
+            }
+            // A word; whether it is one of the choice's is said where it is taken.
+            (_, Type::Choice(_)) => Some(0),
             (ExprKind::List(items), Type::List(element)) => {
                 let deferred = items.iter().filter(|item| self.is_deferred(item));
                 deferred.map(|item| self.deferred_cost(item, element)).sum()
@@ -158,11 +176,47 @@ impl<'a> Checker<'a> {
         span: Span,
         role: Role<'a>,
     ) -> ExprId {
-        if let Some((callee, _)) = self.named_callee(name, to) {
+        match self.named_callee(name, to) {
+            Some((callee, _)) => {
+                let from = self.callee_type(&callee);
+                self.adapt(callee, &from, to, span)
+            }
+            None => {
+                let form = self.form_of(name);
+                self.unfitting_function(name, form, to, span, role)
+            }
+        }
+    }
+
+    /// `clouds.puff` where a function value is expected.
+    pub(super) fn imported_function_value(
+        &mut self,
+        index: usize,
+        to: &FunctionType,
+        span: Span,
+        role: Role<'a>,
+    ) -> ExprId {
+        if let Some((callee, _)) = self.item_callee(index, to) {
             let from = self.callee_type(&callee);
             return self.adapt(callee, &from, to, span);
         }
-        let Some(form) = self.form_of(name) else {
+        let form = match &self.items[index].kind {
+            Kind::Function { head: Some(head), .. } => Some(super::words::head(head)),
+            Kind::Function { head: None, .. } | Kind::Let { .. } | Kind::Param { .. } => None,
+        };
+        let name = &self.items[index].name.text;
+        self.unfitting_function(name, form, to, span, role)
+    }
+
+    fn unfitting_function(
+        &mut self,
+        name: &str,
+        form: Option<String>,
+        to: &FunctionType,
+        span: Span,
+        role: Role<'a>,
+    ) -> ExprId {
+        let Some(form) = form else {
             // A function that depends on itself; reported.
             return self.wrong(span);
         };
@@ -178,12 +232,8 @@ impl<'a> Checker<'a> {
     /// The function behind a name that fits best, with its cost.
     fn named_callee(&self, name: &str, to: &FunctionType) -> Option<(Callee<'a>, u32)> {
         let target = Type::function(to.params.clone(), to.result.clone());
-        if let Some(&index) = self.globals.get(name) {
-            let Kind::Function { head: Some(head), .. } = &self.items[index].kind else { return None };
-            let callee = Callee::User(head.clone());
-            let from = self.callee_type(&callee);
-            let cost = cost(&Type::Function(Box::new(from)), &target)?;
-            return Some((callee, cost));
+        if let Some(index) = self.item_named(name) {
+            return self.item_callee(index, to);
         }
         let fitting = self.builtins.get(name)?.iter().filter_map(|&id| {
             let from = self.callee_type(&Callee::Library(id));
@@ -192,6 +242,16 @@ impl<'a> Checker<'a> {
             (!has_rest).then_some((id, cost))
         });
         fitting.min_by_key(|&(_, cost)| cost).map(|(id, cost)| (Callee::Library(id), cost))
+    }
+
+    /// The function of an item, with its cost.
+    fn item_callee(&self, index: usize, to: &FunctionType) -> Option<(Callee<'a>, u32)> {
+        let Kind::Function { head: Some(head), .. } = &self.items[index].kind else { return None };
+        let callee = Callee::User(head.clone());
+        let from = self.callee_type(&callee);
+        let target = Type::Function(Box::new(to.clone()));
+        let cost = cost(&Type::Function(Box::new(from)), &target)?;
+        Some((callee, cost))
     }
 
     /// The type of a function without its parameters that have defaults.
@@ -247,9 +307,12 @@ impl<'a> Checker<'a> {
                 let signature = self.library.signature(id);
                 let args = signature.params.iter().filter_map(|p| match p.default {
                     DefaultValue::Required => given.next(),
-                    DefaultValue::Number(_) | DefaultValue::Bool(_) => Some(self.default_value(p, span)),
+                    DefaultValue::Number(_) | DefaultValue::Bool(_) | DefaultValue::Word(_) => {
+                        Some(self.default_value(p, span))
+                    }
                 });
-                hir::ExprKind::CallBuiltin(id, args.collect())
+                let args = args.collect();
+                self.library_call(id, args)
             }
             Callee::Value(value) => hir::ExprKind::CallValue(value, given.collect()),
         };

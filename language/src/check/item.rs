@@ -2,11 +2,17 @@
 
 use super::Checker;
 use super::convert::Role;
+use super::names::open_names;
 use super::{BUILT_IN_VALUES, construct};
 use crate::ast::{self, ItemKind, Name, TypeExpr, TypeExprKind};
+use crate::blocks::BLOCK_KINDS;
 use crate::diag::Diagnostic;
 use crate::hir::{self, ExprId, FunctionId, LetId, ParamId};
+use crate::module::ModuleId;
+use crate::source::Span;
+use crate::standard;
 use crate::ty::Type;
+use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
 /// Deepest nesting of a written type.
@@ -15,27 +21,11 @@ const MAX_TYPE_DEPTH: u32 = 64;
 /// Most parameters of a user's function; a call costs as many values.
 const MAX_PARAMETERS: usize = 64;
 
-/// The types that can be written by name.
-const TYPES: [Type; 14] = [
-    Type::Bool,
-    Type::Int,
-    Type::Float,
-    Type::Angle,
-    Type::Vec2,
-    Type::Vec3,
-    Type::Vec4,
-    Type::Color,
-    Type::String,
-    Type::Shape,
-    Type::Curve,
-    Type::Material,
-    Type::Phase,
-    Type::Local,
-];
-
 /// A param, `let` or function.
 pub(super) struct Global<'a> {
     pub(super) name: &'a Name,
+    /// The file that declares it.
+    pub(super) module: ModuleId,
     pub(super) kind: Kind<'a>,
 }
 
@@ -65,17 +55,28 @@ pub(super) struct HeadParam<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// Enters the names of all items; params get their places in source order.
-    pub(super) fn declare(&mut self, file: &'a ast::File) {
-        for item in &file.items {
+    /// Enters the names of all items of a file; params get their places in source order.
+    pub(super) fn declare(&mut self, index: usize) {
+        self.module = ModuleId(index as u32);
+        self.globals.push(HashMap::new());
+        let modules = self.modules;
+        let mut imports: HashMap<&'a str, Span> = HashMap::new();
+        for item in &modules[index].file.items {
             let (name, kind) = match &item.kind {
+                ItemKind::Import(import) => {
+                    self.declare_import(&import.alias, &mut imports);
+                    continue;
+                }
                 ItemKind::Param(param) => {
                     let id = self.declare_param(param, &item.doc);
                     (&param.name, Kind::Param { param, id })
                 }
                 ItemKind::Let(binding) => (&binding.name, Kind::Let { binding, id: None }),
                 ItemKind::Function(function) => (&function.name, Kind::Function { function, head: None }),
-                ItemKind::Block(_) => continue,
+                ItemKind::Block(block) => {
+                    self.declare_block(block);
+                    continue;
+                }
             };
             let text = name.text.as_str();
             if BUILT_IN_VALUES.contains(&text)
@@ -83,13 +84,61 @@ impl<'a> Checker<'a> {
                 || self.builtins.contains_key(text)
             {
                 self.report_taken(name);
-            } else if let Some(&first) = self.globals.get(text) {
+            } else if let Some(first) = self.item_named(text) {
                 let first = self.items[first].name.span;
                 self.report_twice(name, first);
+            } else if let Some(&first) = imports.get(text) {
+                self.report_twice(name, first);
             } else {
-                self.globals.insert(text, self.items.len());
+                self.globals[index].insert(text, self.items.len());
             }
-            self.items.push(Global { name, kind });
+            self.items.push(Global { name, module: self.module, kind });
+        }
+    }
+
+    fn declare_import(&mut self, alias: &'a Name, imports: &mut HashMap<&'a str, Span>) {
+        let text = alias.text.as_str();
+        if BUILT_IN_VALUES.contains(&text) {
+            self.report_taken(alias);
+        } else if let Some(&first) = imports.get(text) {
+            self.report_twice(alias, first);
+        } else if let Some(first) = self.item_named(text) {
+            let first = self.items[first].name.span;
+            self.report_twice(alias, first);
+        } else {
+            imports.insert(text, alias.span);
+        }
+    }
+
+    /// Remembers the block's name; blocks of imported files do not count.
+    fn declare_block(&mut self, block: &'a ast::Block) {
+        let kind = BLOCK_KINDS.into_iter().find(|kind| kind.keyword() == block.keyword.text);
+        if let (Some(name), Some(kind), ModuleId::ROOT) = (&block.name, kind, self.module) {
+            self.block_names.insert(&name.text, kind);
+        }
+    }
+
+    /// The item of the visible file with this name, by index.
+    pub(super) fn item_named(&self, name: &str) -> Option<usize> {
+        self.globals.get(self.module.0 as usize)?.get(name).copied()
+    }
+
+    /// Checks the functions of the standard library that `names` or each other use.
+    pub(super) fn check_library(&mut self, names: &HashSet<String>) {
+        let functions: Vec<&'static ast::Function> =
+            standard::functions().map(|(function, _)| function).collect();
+        let mut wanted: HashSet<&str> = names.iter().map(String::as_str).collect();
+        let mut used: Vec<usize> = Vec::new();
+        // A function only uses earlier ones, so that from the end all its users are known.
+        for (index, function) in functions.iter().enumerate().rev() {
+            if wanted.contains(function.name.text.as_str()) {
+                wanted.extend(open_names(function));
+                used.push(index);
+            }
+        }
+        self.module = ModuleId::LIBRARY;
+        for index in used.into_iter().rev() {
+            self.standard[index] = self.check_function(functions[index]).map(|head| head.id);
         }
     }
 
@@ -97,8 +146,8 @@ impl<'a> Checker<'a> {
     pub(super) fn warn_unused(&mut self, used: &[bool]) {
         for (index, item) in self.items.iter().enumerate() {
             let name = item.name;
-            let is_known = self.globals.get(name.text.as_str()) == Some(&index);
-            if used[index] || !is_known || name.text.starts_with('_') {
+            let is_known = self.globals[0].get(name.text.as_str()) == Some(&index);
+            if used[index] || !is_known || name.text.starts_with('_') || item.module != ModuleId::ROOT {
                 continue;
             }
             let (code, what) = match item.kind {
@@ -148,6 +197,7 @@ impl<'a> Checker<'a> {
 
     /// Checks one item; the items that it uses are checked already, unless they use it.
     pub(super) fn check_item(&mut self, index: usize) {
+        self.module = self.items[index].module;
         match self.items[index].kind {
             Kind::Param { param, id } => self.check_param(param, id),
             Kind::Let { binding, .. } => {
@@ -200,6 +250,7 @@ impl<'a> Checker<'a> {
             result: result.clone(),
             body,
             span: name.span,
+            module: self.module,
         });
         Some(Head { name: &name.text, params, result, id })
     }
@@ -232,10 +283,10 @@ impl<'a> Checker<'a> {
     }
 
     fn named_type(&mut self, name: &str, ty: &TypeExpr) -> Type {
-        if let Some(known) = TYPES.iter().find(|known| known.to_string() == name) {
-            return known.clone();
+        if let Some(known) = Type::named(name) {
+            return known;
         }
-        let names: Vec<String> = TYPES.iter().map(Type::to_string).collect();
+        let names: Vec<String> = Type::all_named().iter().map(Type::to_string).collect();
         let help = match self.suggest(name, |_| names.iter().map(String::as_str).collect()) {
             Some(near) => format!("did you mean `{near}`"),
             None => format!("the types are `{}`", names.join("`, `")),

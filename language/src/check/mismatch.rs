@@ -72,6 +72,10 @@ impl<'a> Checker<'a> {
             (Type::Vec4, Type::Vec3 | Type::Color) => Some(format!("write `{text}.xyz`")),
             (Type::Vec2, Type::Vec3) => Some(format!("write `vec3({text}, 0)`")),
             (Type::Vec3 | Type::Color, Type::Vec4) => Some(format!("write `vec4({text}, 0)`")),
+            (Type::Record(record), to) => {
+                let fits = record.fields.iter().find(|(_, ty)| super::convert::cost(ty, to).is_some());
+                fits.map(|(name, _)| format!("read a value of the last step: `{text}.{name}`"))
+            }
             (Type::Local, Type::Vec3) => Some(format!("write `{text}.local`, or `{text}.world`")),
             (Type::Int | Type::Float, Type::Bool) if self.is_literal(id) => {
                 Some("write `true` or `false`".to_owned())

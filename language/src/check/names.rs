@@ -5,8 +5,9 @@
 //! steps, so a deep tree does no harm.
 
 use super::order::Use;
-use crate::ast::{Argument, Entry, Expr, ExprKind, File, Function, ItemKind, Name};
+use crate::ast::{Argument, Entry, Expr, ExprKind, Function, ItemKind, Iterate, Keys, Name};
 use crate::diag::Diagnostic;
+use crate::module::{Module, ModuleId};
 use crate::source::Span;
 use std::collections::{HashMap, HashSet};
 
@@ -16,23 +17,27 @@ pub(super) struct Uses {
     pub(super) edges: Vec<Vec<Use>>,
     /// Whether anything uses the item.
     pub(super) used: Vec<bool>,
-    /// Parameters and block-local `let`s that nobody uses.
+    /// Names that are neither bound nor an item: those of the library's functions among them.
+    pub(super) library: HashSet<String>,
+    /// Parameters and block-local `let`s of the scene's own file that nobody uses.
     pub(super) warnings: Vec<Diagnostic>,
 }
 
-/// Walks all items of a file; `globals` says which name is which of the `count` items.
-pub(super) fn uses(file: &File, globals: &HashMap<&str, usize>, count: usize) -> Uses {
-    let mut found = Uses { edges: Vec::with_capacity(count), used: vec![false; count], warnings: Vec::new() };
-    for item in &file.items {
-        let mut walker = Walker {
-            globals,
-            scope: Default::default(),
-            bindings: vec![],
-            seen: Default::default(),
-            uses: vec![],
-            warnings: vec![],
-        };
+/// Walks all items; `globals` says for each file which name is which of the `count` items.
+pub(super) fn uses(modules: &[Module], globals: &[HashMap<&str, usize>], count: usize) -> Uses {
+    let mut found = Uses {
+        edges: Vec::with_capacity(count),
+        used: vec![false; count],
+        library: HashSet::new(),
+        warnings: Vec::new(),
+    };
+    let items = modules.iter().enumerate();
+    for (module, item) in items.flat_map(|(i, module)| module.file.items.iter().map(move |item| (i, item))) {
+        let mut walker = Walker::new(&modules[module], module, globals);
         match &item.kind {
+            ItemKind::Import(_) => {}
+            // Blocks of imported files do not count.
+            ItemKind::Block(_) if module > 0 => {}
             ItemKind::Param(param) => {
                 walker.walk(vec![Step::Visit(&param.default)]);
                 if let Some((low, high)) = &param.range {
@@ -43,15 +48,25 @@ pub(super) fn uses(file: &File, globals: &HashMap<&str, usize>, count: usize) ->
             ItemKind::Function(function) => walker.walk(function_steps(function)),
             ItemKind::Block(block) => walker.walk(entry_steps(&block.entries)),
         }
-        found.warnings.append(&mut walker.warnings);
+        if module == 0 {
+            found.warnings.append(&mut walker.warnings);
+        }
+        found.library.extend(walker.unknown.iter().map(|name| (*name).to_owned()));
         for &(target, _) in &walker.uses {
             found.used[target] = true;
         }
-        if !matches!(item.kind, ItemKind::Block(_)) {
+        if !matches!(item.kind, ItemKind::Block(_) | ItemKind::Import(_)) {
             found.edges.push(walker.uses);
         }
     }
     found
+}
+
+/// The names that the body of a function leaves open.
+pub(super) fn open_names(function: &Function) -> HashSet<&str> {
+    let mut walker = Walker::alone();
+    walker.walk(function_steps(function));
+    walker.unknown
 }
 
 /// What a binding is called in a warning; bindings without a kind may stay unused.
@@ -76,16 +91,40 @@ struct Binding<'a> {
 }
 
 struct Walker<'a, 'g> {
-    globals: &'g HashMap<&'a str, usize>,
+    /// Its imports are known by name.
+    imports: &'g [(Name, Option<ModuleId>)],
+    globals: &'g [HashMap<&'a str, usize>],
+    /// Index of the file.
+    module: usize,
     /// Indices into `bindings` by name, innermost last.
     scope: HashMap<&'a str, Vec<usize>>,
     bindings: Vec<Binding<'a>>,
     seen: HashSet<usize>,
     uses: Vec<Use>,
+    unknown: HashSet<&'a str>,
     warnings: Vec<Diagnostic>,
 }
 
-impl<'a> Walker<'a, '_> {
+impl<'a, 'g> Walker<'a, 'g> {
+    fn new(file: &'g Module, module: usize, globals: &'g [HashMap<&'a str, usize>]) -> Self {
+        Self { imports: &file.imports, globals, module, ..Walker::alone() }
+    }
+
+    /// For a function outside of any file.
+    fn alone() -> Self {
+        Self {
+            imports: &[],
+            globals: &[],
+            module: 0,
+            scope: HashMap::new(),
+            bindings: Vec::new(),
+            seen: HashSet::new(),
+            uses: Vec::new(),
+            unknown: HashSet::new(),
+            warnings: Vec::new(),
+        }
+    }
+
     fn walk(&mut self, mut steps: Vec<Step<'a>>) {
         while let Some(step) = steps.pop() {
             match step {
@@ -123,7 +162,12 @@ impl<'a> Walker<'a, '_> {
             ExprKind::Range(a, b) | ExprKind::Binary(_, a, b) => {
                 steps.extend([Step::Visit(b), Step::Visit(a)]);
             }
-            ExprKind::Unary(_, inner) | ExprKind::Field(inner, _) => steps.push(Step::Visit(inner)),
+            ExprKind::NamedTuple(arguments) => steps.extend(argument_steps(arguments)),
+            ExprKind::Field(of, name) => match self.import(of) {
+                Some(module) => self.resolve_in(module, &name.text, name.span),
+                None => steps.push(Step::Visit(of)),
+            },
+            ExprKind::Unary(_, inner) => steps.push(Step::Visit(inner)),
             ExprKind::If(condition, yes, no) => {
                 steps.extend([Step::Visit(no), Step::Visit(yes), Step::Visit(condition)]);
             }
@@ -142,22 +186,46 @@ impl<'a> Walker<'a, '_> {
                 steps.push(Step::Visit(callee));
             }
             ExprKind::MethodCall(receiver, name, arguments) => {
-                self.resolve(&name.text, name.span);
                 steps.extend(argument_steps(arguments));
-                steps.push(Step::Visit(receiver));
+                match self.import(receiver) {
+                    Some(module) => self.resolve_in(module, &name.text, name.span),
+                    None => {
+                        self.resolve(&name.text, name.span);
+                        steps.push(Step::Visit(receiver));
+                    }
+                }
             }
             ExprKind::Record(entries) => steps.extend(entry_steps(entries)),
+            ExprKind::Iterate(iterate) => steps.extend(iterate_steps(iterate)),
+            ExprKind::Keys(keys) => steps.extend(keys_steps(keys)),
         }
     }
 
-    fn resolve(&mut self, name: &str, span: Span) {
+    fn resolve(&mut self, name: &'a str, span: Span) {
         if let Some(&index) = self.scope.get(name).and_then(|indices| indices.last()) {
             self.bindings[index].used = true;
-        } else if let Some(&item) = self.globals.get(name)
+        } else if self.globals.get(self.module).is_some_and(|names| names.contains_key(name)) {
+            self.resolve_in(ModuleId(self.module as u32), name, span);
+        } else {
+            self.unknown.insert(name);
+        }
+    }
+
+    fn resolve_in(&mut self, module: ModuleId, name: &str, span: Span) {
+        if let Some(&item) = self.globals[module.0 as usize].get(name)
             && self.seen.insert(item)
         {
             self.uses.push((item, span));
         }
+    }
+
+    /// The file that an expression names.
+    fn import(&self, expr: &Expr) -> Option<ModuleId> {
+        let ExprKind::Name(name) = &expr.kind else { return None };
+        if self.scope.get(name.as_str()).is_some_and(|indices| !indices.is_empty()) {
+            return None;
+        }
+        self.imports.iter().find(|(alias, _)| alias.text == *name).and_then(|(_, module)| *module)
     }
 
     fn leave(&mut self) {
@@ -194,6 +262,24 @@ fn function_steps(function: &Function) -> Vec<Step<'_>> {
 
 fn entry_steps(entries: &[Entry]) -> Vec<Step<'_>> {
     entries.iter().rev().map(|entry| Step::Visit(&entry.value)).collect()
+}
+
+/// First values and the number of steps see no state.
+fn iterate_steps(iterate: &Iterate) -> Vec<Step<'_>> {
+    let mut steps = vec![Step::Leave(iterate.state.len())];
+    steps.extend(iterate.next.iter().map(|next| Step::Visit(&next.value)));
+    steps.extend(iterate.condition.iter().map(Step::Visit));
+    steps.extend(iterate.state.iter().map(|state| Step::Bind(&state.name, None)));
+    steps.extend(iterate.state.iter().map(|state| Step::Visit(&state.value)));
+    steps.push(Step::Visit(&iterate.count));
+    steps
+}
+
+fn keys_steps(keys: &Keys) -> Vec<Step<'_>> {
+    let mut steps: Vec<Step<'_>> = keys.ease.iter().map(Step::Visit).collect();
+    steps.extend(keys.keys.iter().flat_map(|(place, value)| [Step::Visit(place), Step::Visit(value)]));
+    steps.push(Step::Visit(&keys.at));
+    steps
 }
 
 fn argument_steps(arguments: &[Argument]) -> impl Iterator<Item = Step<'_>> {

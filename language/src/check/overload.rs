@@ -5,7 +5,7 @@ use super::arguments::{Given, Misfit, Slot, bind};
 use super::call::{Arg, Value};
 use super::convert::{Role, cost};
 use super::words;
-use crate::ast::ExprKind as Written;
+use crate::ast::{ExprKind as Written, Name};
 use crate::diag::Diagnostic;
 use crate::hir::{Conversion, ExprId, ExprKind};
 use crate::library::{BuiltinId, DefaultValue, Parameter, Signature};
@@ -34,9 +34,10 @@ impl<'a> Checker<'a> {
         span: Span,
     ) -> ExprId {
         // Type what can stand by itself; the rest waits for its parameter's type.
-        for arg in &mut args {
+        for (i, arg) in args.iter_mut().enumerate() {
             if let Value::Written(expr) = arg.value
                 && !self.is_deferred(expr)
+                && !self.may_be_word(name, i, arg.name)
             {
                 arg.value = Value::Typed(self.infer(expr));
             }
@@ -67,6 +68,19 @@ impl<'a> Checker<'a> {
             _ => self.report_forms(name, name_span, &args),
         }
         self.wrong(span)
+    }
+
+    /// Whether a form of the function takes a word for this argument.
+    fn may_be_word(&self, name: &str, index: usize, arg: Option<&Name>) -> bool {
+        let mut forms = self.builtins.get(name).into_iter().flatten();
+        forms.any(|&id| {
+            let params = &self.library.signature(id).params;
+            let param = match arg {
+                Some(arg) => params.iter().find(|param| param.name == arg.text),
+                None => params.get(index),
+            };
+            param.is_some_and(|param| matches!(param.ty, Type::Choice(_)))
+        })
     }
 
     fn try_forms(&self, name: &str, args: &[Arg<'a>]) -> Trial {
@@ -138,7 +152,8 @@ impl<'a> Checker<'a> {
                 Given::Default => self.default_value(param, span),
             });
         }
-        self.push(ExprKind::CallBuiltin(id, values), signature.result.clone(), span)
+        let call = self.library_call(id, values);
+        self.push(call, signature.result.clone(), span)
     }
 
     fn rest(
@@ -177,6 +192,7 @@ impl<'a> Checker<'a> {
             }
             DefaultValue::Number(value) => self.push(ExprKind::Number(*value), ty.clone(), span),
             DefaultValue::Bool(value) => self.push(ExprKind::Bool(*value), ty.clone(), span),
+            DefaultValue::Word(word) => self.push(ExprKind::Choice(word, Vec::new()), ty.clone(), span),
             DefaultValue::Required => self.wrong(span),
         }
     }

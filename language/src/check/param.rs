@@ -22,7 +22,7 @@ impl<'a> Checker<'a> {
         }
         let id = ParamId(self.scene.params.len() as u32);
         self.scene.params.push(hir::Param {
-            name: param.name.text.clone(),
+            name: format!("{}{}", self.modules[self.module.0 as usize].prefix, param.name.text),
             default: vec![0.0; ty.components().unwrap_or(1)],
             ty,
             range: None,

@@ -3,9 +3,10 @@
 use super::constant::Constant;
 use super::item::Kind;
 use super::{BUILT_IN_VALUES, Checker, construct};
-use crate::ast::Name;
+use crate::ast::{self, Expr, Name};
 use crate::diag::Diagnostic;
 use crate::hir::{self, ExprId, LocalId};
+use crate::module::ModuleId;
 use crate::source::Span;
 use crate::ty::Type;
 use std::collections::HashMap;
@@ -22,8 +23,11 @@ impl<'a> Checker<'a> {
                 self.push(hir::ExprKind::Local(local), ty, span)
             };
         }
-        if let Some(&index) = self.globals.get(name) {
+        if let Some(index) = self.item_named(name) {
             return self.global(name, index, span);
+        }
+        if self.import_named(name).is_some() {
+            return self.stray_import(name, span);
         }
         match name {
             "time" => self.push(hir::ExprKind::Time, Type::Float, span),
@@ -37,7 +41,55 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn global(&mut self, name: &str, index: usize, span: Span) -> ExprId {
+    /// The import of the visible file with this name: the file behind it, if that could be read.
+    fn import_named(&self, name: &str) -> Option<Option<ModuleId>> {
+        let imports = &self.modules.get(self.module.0 as usize)?.imports;
+        imports.iter().find(|(alias, _)| alias.text == name).map(|(_, module)| *module)
+    }
+
+    /// The import that an expression names, as in `clouds` of `clouds.puff(…)`.
+    pub(super) fn import(&self, expr: &Expr) -> Option<Option<ModuleId>> {
+        let ast::ExprKind::Name(name) = &expr.kind else { return None };
+        if self.scope.find(name).is_some() || self.item_named(name).is_some() {
+            return None;
+        }
+        self.import_named(name)
+    }
+
+    /// The item `name` of an imported file, by index; reports it if there is none.
+    pub(super) fn imported_item(&mut self, module: ModuleId, name: &Name) -> Option<usize> {
+        let found = self.globals[module.0 as usize].get(name.text.as_str()).copied();
+        if found.is_none() {
+            let text = &name.text;
+            let file = &self.modules[module.0 as usize].prefix;
+            let message = format!("the import `{}` has no item `{text}`", file.trim_end_matches('.'));
+            let error = Diagnostic::error("E0605", message, name.span, "no such item");
+            let known = |checker: &Self| checker.globals[module.0 as usize].keys().copied().collect();
+            let help = match self.suggest(text, known) {
+                Some(near) => format!("did you mean `{near}`"),
+                None => "its functions, `let`s and params can be used".to_owned(),
+            };
+            self.report(error.with_help(help));
+        }
+        found
+    }
+
+    /// `clouds.base`
+    pub(super) fn imported_value(&mut self, module: Option<ModuleId>, name: &Name, span: Span) -> ExprId {
+        match module.and_then(|module| self.imported_item(module, name)) {
+            Some(index) => self.global(&name.text, index, span),
+            None => self.wrong(span),
+        }
+    }
+
+    fn stray_import(&mut self, name: &str, span: Span) -> ExprId {
+        let message = format!("`{name}` is an import, not a value");
+        let error = Diagnostic::error("E0606", message, span, "an import");
+        self.report(error.with_help(format!("name one of its items: `{name}.item`")));
+        self.wrong(span)
+    }
+
+    pub(super) fn global(&mut self, name: &str, index: usize, span: Span) -> ExprId {
         match &self.items[index].kind {
             Kind::Param { id, .. } => {
                 let (id, ty) = (*id, self.scene.params[id.index()].ty.clone());
@@ -68,8 +120,8 @@ impl<'a> Checker<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span) -> ExprId {
         let known = |checker: &Self| {
-            let names = checker.scope.names().chain(checker.globals.keys().copied());
-            names.chain(BUILT_IN_VALUES).collect()
+            let items = checker.globals.get(checker.module.0 as usize).into_iter().flat_map(HashMap::keys);
+            checker.scope.names().chain(items.copied()).chain(BUILT_IN_VALUES).collect()
         };
         let help = match self.suggest(name, known) {
             Some(near) => format!("did you mean `{near}`"),
@@ -83,7 +135,10 @@ impl<'a> Checker<'a> {
     /// Reports a call of something that does not exist.
     pub(super) fn unknown_function(&mut self, name: &str, span: Span) {
         let known = |checker: &Self| {
-            let users = checker.items.iter().filter(|item| matches!(item.kind, Kind::Function { .. }));
+            let users = checker
+                .items
+                .iter()
+                .filter(|item| item.module == checker.module && matches!(item.kind, Kind::Function { .. }));
             let users = users.map(|item| item.name.text.as_str());
             users.chain(checker.builtins.keys().copied()).chain(construct::NAMES).collect()
         };

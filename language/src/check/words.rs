@@ -16,6 +16,11 @@ pub(super) fn a(ty: &Type) -> String {
         Type::Function(_) => format!("a function {ty}"),
         Type::Local => "a local point".to_owned(),
         Type::Phase => "a phase function".to_owned(),
+        Type::Record(_) => format!("a record {ty}"),
+        Type::Image => "an image".to_owned(),
+        Type::Block(kind) => format!("the name of {}", article(kind.keyword())),
+        Type::Choice(kind) => article(kind.name()),
+        Type::Settings(kind) => kind.name().to_owned(),
         Type::Bool
         | Type::Float
         | Type::Vec2
@@ -28,6 +33,12 @@ pub(super) fn a(ty: &Type) -> String {
         | Type::Material => format!("a {ty}"),
         Type::Error => "a value of unknown type".to_owned(),
     }
+}
+
+/// A noun with its article.
+pub(super) fn article(noun: &str) -> String {
+    let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {noun}")
 }
 
 /// A library function as a call form: `fbm(p: vec3, octaves: int = 4) -> float`.
@@ -46,6 +57,7 @@ fn parameter(parameter: &Parameter) -> String {
         DefaultValue::Number(value) if *result_of(ty) == Type::Angle => format!("{name}: {ty} = {value}rad"),
         DefaultValue::Number(value) => format!("{name}: {ty} = {value}"),
         DefaultValue::Bool(value) => format!("{name}: {ty} = {value}"),
+        DefaultValue::Word(word) => format!("{name}: {ty} = {word}"),
     }
 }
 
@@ -61,7 +73,20 @@ fn lambda(params: &[Type]) -> &'static str {
 
 /// Whether only functions make values of this type.
 fn is_made(ty: &Type) -> bool {
-    matches!(ty, Type::Shape | Type::Curve | Type::Material | Type::Phase | Type::Local | Type::Error)
+    matches!(
+        ty,
+        Type::Shape
+            | Type::Curve
+            | Type::Material
+            | Type::Phase
+            | Type::Local
+            | Type::Record(_)
+            | Type::Image
+            | Type::Block(_)
+            | Type::Choice(_)
+            | Type::Settings(_)
+            | Type::Error
+    )
 }
 
 /// What a function gives; other types are themselves.
@@ -121,7 +146,18 @@ impl Checker<'_> {
                 let args: Option<Vec<String>> = required.map(|param| self.sample(&param.ty)).collect();
                 return Some(format!("{}({})", known.name, args?.join(", ")));
             }
-            Type::Local | Type::Error => return None,
+            Type::Choice(kind) => {
+                let words = kind.words();
+                let bare: Vec<&str> =
+                    words.iter().filter(|word| word.params.is_empty()).map(|word| word.name).collect();
+                return Some(match bare[..] {
+                    [] => format!("{}(…)", words.first()?.name),
+                    [first, ..] => first.to_owned(),
+                });
+            }
+            Type::Settings(_) => "{ … }",
+            Type::Image => "\"picture.png\"",
+            Type::Local | Type::Record(_) | Type::Block(_) | Type::Error => return None,
         };
         Some(sample.to_owned())
     }
@@ -156,6 +192,12 @@ impl Checker<'_> {
             | ExprKind::CallValue(..)
             | ExprKind::List(_)
             | ExprKind::Comprehension { .. }
+            | ExprKind::Iterate(_)
+            | ExprKind::RecordField(..)
+            | ExprKind::Keys(_)
+            | ExprKind::Choice(..)
+            | ExprKind::BlockName(_)
+            | ExprKind::Settings(_)
             | ExprKind::Convert(..)
             | ExprKind::Error => None,
         }

@@ -1,11 +1,12 @@
 //! Diagnostics as text for people and as JSON lines for programs; the only user of codespan.
 
 use super::{Diagnostic, Severity};
-use crate::source::{SourceFile, Span};
+use crate::source::{SourceFile, Sources, Span};
 use codespan_reporting::diagnostic as codespan;
-use codespan_reporting::files::SimpleFile;
+use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term::{self, termcolor::Buffer};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Longest source line that is shown, in bytes; a message about a longer one has only its place.
@@ -13,19 +14,22 @@ const MAX_SHOWN_LINE: usize = 1000;
 
 /// The messages with the source lines they point at, for a terminal.
 #[must_use]
-pub fn human(file: &SourceFile, diagnostics: &[Diagnostic], colour: bool) -> String {
-    let source = SimpleFile::new(file.name.as_str(), file.text.as_str());
+pub fn human(sources: &Sources, diagnostics: &[Diagnostic], colour: bool) -> String {
     let rich = term::Config::default();
     let brief = term::Config { display_style: term::DisplayStyle::Medium, ..term::Config::default() };
     let styles = term::Styles::default();
     let mut out = if colour { Buffer::ansi() } else { Buffer::no_color() };
     for diagnostic in diagnostics {
-        let shown = codespan_diagnostic(&file.text, diagnostic);
-        let is_long = shown.labels.iter().any(|label| has_long_line(&file.text, label.range.clone()));
+        let (files, shown) = codespan_diagnostic(sources, diagnostic);
+        let is_long = diagnostic
+            .labels
+            .iter()
+            .zip(&shown.labels)
+            .any(|(label, shown)| has_long_line(&sources.locate(label.span).0.text, shown.range.clone()));
         let config = if is_long { &brief } else { &rich };
         let mut writer = term::StylesWriter::new(&mut out, &styles);
         // Fails only on places outside the file, of which `clamp` leaves none.
-        if term::emit_to_write_style(&mut writer, config, &source, &shown).is_err() {
+        if term::emit_to_write_style(&mut writer, config, &files, &shown).is_err() {
             return diagnostics.iter().map(|d| format!("{}: {}\n", d.code, d.message)).collect();
         }
     }
@@ -41,20 +45,33 @@ fn has_long_line(text: &str, range: Range<usize>) -> bool {
     text[start..end].split('\n').any(|line| line.len() > MAX_SHOWN_LINE)
 }
 
-fn codespan_diagnostic(text: &str, diagnostic: &Diagnostic) -> codespan::Diagnostic<()> {
+/// The diagnostic and the files that its labels lie in.
+fn codespan_diagnostic<'a>(
+    sources: &'a Sources,
+    diagnostic: &Diagnostic,
+) -> (SimpleFiles<&'a str, &'a str>, codespan::Diagnostic<usize>) {
+    let mut files = SimpleFiles::new();
+    let mut known: Vec<&SourceFile> = Vec::new();
     let labels = diagnostic.labels.iter().enumerate().map(|(i, label)| {
         let style = if i == 0 { codespan::LabelStyle::Primary } else { codespan::LabelStyle::Secondary };
-        codespan::Label::new(style, (), clamp(text, label.span)).with_message(&label.text)
+        let (file, span) = sources.locate(label.span);
+        let id = known.iter().position(|other| std::ptr::eq(*other, file)).unwrap_or_else(|| {
+            known.push(file);
+            files.add(file.name.as_str(), file.text.as_str())
+        });
+        codespan::Label::new(style, id, clamp(&file.text, span)).with_message(&label.text)
     });
+    let labels: Vec<_> = labels.collect();
     let severity = match diagnostic.severity {
         Severity::Error => codespan::Severity::Error,
         Severity::Warning => codespan::Severity::Warning,
     };
-    codespan::Diagnostic::new(severity)
+    let shown = codespan::Diagnostic::new(severity)
         .with_code(diagnostic.code)
         .with_message(&diagnostic.message)
-        .with_labels_iter(labels)
-        .with_notes_iter(diagnostic.help.iter().map(|help| format!("help: {help}")))
+        .with_labels(labels)
+        .with_notes_iter(diagnostic.help.iter().map(|help| format!("help: {help}")));
+    (files, shown)
 }
 
 /// The bytes of a span that can be shown: inside the text, whole characters, and no line end at
@@ -73,21 +90,24 @@ fn floor_boundary(text: &str, at: usize) -> usize {
 
 /// The messages as JSON, one object on each line.
 ///
-/// Byte offsets are those of the file; lines and columns count from 1, columns in characters; ends
-/// are exclusive.
+/// Byte offsets are those of the label's file; lines and columns count from 1, columns in characters;
+/// ends are exclusive. The message's file is that of its first label.
 #[must_use]
-pub fn json(file: &SourceFile, diagnostics: &[Diagnostic]) -> String {
-    let lines = line_starts(&file.text);
+pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let mut lines: HashMap<&str, Vec<usize>> = HashMap::new();
     let mut out = String::new();
     for diagnostic in diagnostics {
         let labels = diagnostic.labels.iter().map(|label| {
-            let range = clamp(&file.text, label.span);
-            let start = position(&file.text, &lines, range.start);
-            let end = position(&file.text, &lines, range.end);
-            JsonLabel { start, end, text: &label.text }
+            let (file, span) = sources.locate(label.span);
+            let lines = lines.entry(&file.name).or_insert_with(|| line_starts(&file.text));
+            let range = clamp(&file.text, span);
+            let start = position(&file.text, lines, range.start);
+            let end = position(&file.text, lines, range.end);
+            JsonLabel { file: &file.name, start, end, text: &label.text }
         });
+        let place = diagnostic.labels.first().map_or(Span::default(), |label| label.span);
         let shown = JsonDiagnostic {
-            file: &file.name,
+            file: &sources.locate(place).0.name,
             severity: diagnostic.severity,
             code: diagnostic.code,
             message: &diagnostic.message,
@@ -112,6 +132,7 @@ struct JsonDiagnostic<'a> {
 
 #[derive(Serialize)]
 struct JsonLabel<'a> {
+    file: &'a str,
     start: Position,
     end: Position,
     text: &'a str,
@@ -143,7 +164,7 @@ mod tests {
     fn shown(text: &str, start: usize, end: usize) -> String {
         let diagnostic =
             Diagnostic::error("E0102", "wrong", Span::new(start, end), "here").with_help("write `a`");
-        human(&SourceFile::new("a.vol", text), &[diagnostic], false)
+        human(&SourceFile::new("a.vol", text).into(), &[diagnostic], false)
     }
 
     #[test]
@@ -158,7 +179,7 @@ mod tests {
     #[test]
     fn any_span_of_any_text_can_be_shown() {
         for text in ["", "\n", "\r\n", "a", "é", "aé\n", "a\r\nb\r\n\r\n", "\t\u{1}x"] {
-            let file = SourceFile::new("a.vol", text);
+            let file = SourceFile::new("a.vol", text).into();
             for start in 0..text.len() + 3 {
                 for end in [0, start, start + 1, start + 2, 99, u32::MAX as usize] {
                     let d = Diagnostic::warning("W0101", "odd", Span::new(start, end), "this")
@@ -189,12 +210,12 @@ mod tests {
     fn a_message_without_a_place_is_shown() {
         let mut diagnostic = Diagnostic::error("E0300", "no place", Span::default(), "");
         diagnostic.labels.clear();
-        assert!(human(&SourceFile::new("a.vol", ""), &[diagnostic], false).contains("no place"));
+        assert!(human(&SourceFile::new("a.vol", "").into(), &[diagnostic], false).contains("no place"));
     }
 
     #[test]
     fn json_has_one_object_a_line() {
-        let file = SourceFile::new("a.vol", "// é\nlet é = \"x\"\n");
+        let file = SourceFile::new("a.vol", "// é\nlet é = \"x\"\n").into();
         let first = Diagnostic::error("E0104", "a \"quoted\" word", Span::new(10, 12), "here");
         let second = Diagnostic::warning("W0101", "odd", Span::new(15, 18), "").with_help("write `a`");
         let text = json(&file, &[first, second]);

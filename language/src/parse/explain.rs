@@ -25,7 +25,6 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0111", "the file is too large"),
     ("E0112", "a vector has more than four components"),
     ("E0113", "an item begins with an unknown word"),
-    ("E0114", "a part of the language that this version does not support yet"),
     ("E0115", "too many syntax errors; the rest is not shown"),
 ];
 
@@ -185,6 +184,16 @@ pub(super) fn not_an_argument_name(at: Span) -> Diagnostic {
         .with_help("write a named argument as `name: value`")
 }
 
+pub(super) fn not_a_key(at: Span) -> Diagnostic {
+    Diagnostic::error("E0102", "expected `:` after the place of a key", at, "a key has a place and a value")
+        .with_help("write keys as `keys(time, 0s: a, 2s: b)`")
+}
+
+pub(super) fn empty_keys(at: Span) -> Diagnostic {
+    Diagnostic::error("E0102", "expected what runs along the keys", at, "nothing stands here")
+        .with_help("write keys as `keys(time, 0s: a, 2s: b)`")
+}
+
 pub(super) fn empty_brackets(at: Span) -> Diagnostic {
     Diagnostic::error("E0102", "expected an expression between `(` and `)`", at, "nothing stands here")
         .with_help("write a value between them, or a function without parameters as `() => …`")
@@ -208,14 +217,14 @@ pub(super) fn after_block(at: Span, found: &str) -> Diagnostic {
 
 /// Item words for the help lines.
 fn item_words() -> impl Iterator<Item = &'static str> {
-    ["param", "let", "fn"].into_iter().chain(BLOCK_KINDS.iter().map(|kind| kind.keyword()))
+    ["import", "param", "let", "fn"].into_iter().chain(BLOCK_KINDS.iter().map(|kind| kind.keyword()))
 }
 
 /// An item that begins with a word that begins none, or with no word at all.
 pub(super) fn unknown_item(at: Span, found: &str, next: Option<&str>) -> Diagnostic {
     let known = item_words().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let is_word = found.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let help = match (next, nearest(found, item_words().chain(["import", "style"]))) {
+    let help = match (next, nearest(found, item_words())) {
         (Some("="), _) if is_word => format!("write `let {found} = …`"),
         _ if matches!(found, "function" | "func" | "def") => {
             "write `fn name(x: float) -> float { … }`".to_owned()
@@ -230,16 +239,4 @@ pub(super) fn unknown_item(at: Span, found: &str, next: Option<&str>) -> Diagnos
     };
     let message = format!("{} does not begin an item", quoted(found));
     Diagnostic::error("E0113", message, at, "expected an item here").with_help(help)
-}
-
-/// A part of the language that is planned.
-pub(super) fn unsupported(at: Span, what: &str) -> Diagnostic {
-    let help = match what {
-        "import" => "copy the items that you need into this file",
-        "style" => "remove the block: the scene renders without it",
-        "iterate" => "write the steps out, or build a list with `[for i in 0..n: …]`",
-        _ => "compute the value from `time`, for example `mix(a, b, smoothstep(0, 2, time))`",
-    };
-    let message = format!("this version does not support `{what}` yet");
-    Diagnostic::error("E0114", message, at, "not supported yet").with_help(help)
 }

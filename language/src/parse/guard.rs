@@ -2,8 +2,8 @@
 //!
 //! One walk over the tokens
 //! * matches brackets and reports those that don't;
-//! * bounds how deep the grammar can recurse: brackets, and what nests without one (`if`, `=>`,
-//!   `->`, a run of prefix operators);
+//! * bounds how deep the grammar can recurse: brackets, and what nests without one (`if`, `iterate`,
+//!   `=>`, `->`, a run of prefix operators);
 //! * marks where items begin;
 //! * writes `;` into the mask for a line end that must not be skipped: before a `(`, which would
 //!   turn the line above into a call, and in a block with `let`s before a `-`, which would
@@ -20,7 +20,7 @@ const MAX_OPERATORS: u32 = 4096;
 
 /// Words that begin an item.
 pub(super) fn is_item_word(word: &str) -> bool {
-    matches!(word, "param" | "let" | "fn" | "import" | "style") || is_block_word(word)
+    matches!(word, "param" | "let" | "fn" | "import") || is_block_word(word)
 }
 
 /// Words that begin a scene block.
@@ -33,7 +33,7 @@ fn ends_operand(token: &Token, text: &str) -> bool {
     match token.kind {
         Kind::Word => !matches!(
             token.text(text),
-            "let" | "if" | "then" | "else" | "for" | "in" | "fn" | "param" | "import" | "as"
+            "let" | "if" | "then" | "else" | "for" | "in" | "fn" | "param" | "import" | "iterate" | "as"
         ),
         Kind::Number | Kind::Text | Kind::Color | Kind::Close => true,
         Kind::Open | Kind::Symbol => false,
@@ -166,7 +166,7 @@ impl Walk<'_> {
                 self.separate();
                 self.frame().has_let = true;
             }
-            "if" => self.nest(),
+            "if" | "iterate" => self.nest(),
             _ => {}
         }
     }
@@ -286,7 +286,7 @@ impl Walk<'_> {
             return self.is_flush_item_word(token);
         }
         let after_block = before.kind == Kind::Close && before.text(self.text) == "}";
-        let continues = matches!(word, "if" | "then" | "else" | "for" | "in" | "as");
+        let continues = matches!(word, "if" | "then" | "else" | "for" | "in" | "as" | "from" | "while");
         is_item_word(word) || ((token.starts_line || after_block) && !continues)
     }
 

@@ -76,11 +76,22 @@ pub(super) fn entries<'a>(text: &str, inside: &'a [Token]) -> Vec<RawEntry<'a>> 
     let is = |token: &Token, symbol: &str| token.depth == depth && token.text(text) == symbol;
     let mut start = 0;
     let mut separator = Separator::Start;
+    // Loops whose `:` is still to come: `iterate 9 from (a = 1) while a < limit: (a = 2 * a)`.
+    let mut loops = 0;
     for (i, token) in inside.iter().enumerate() {
+        if is(token, "iterate") {
+            loops += 1;
+        } else if is(token, ":") && loops > 0 {
+            loops -= 1;
+        }
         let key = i > start
             && token.kind == Kind::Word
             && token.depth == depth
+            && (loops == 0 || token.starts_line)
             && inside.get(i + 1).is_some_and(|next| is(next, ":"));
+        if key {
+            loops = 0;
+        }
         let comma = is(token, ",");
         if key || comma {
             entries.push(RawEntry { tokens: &inside[start..i], separator, end: token.span() });

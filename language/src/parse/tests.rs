@@ -97,6 +97,21 @@ fn shape(expr: &Expr) -> String {
             let entries = entries.iter().map(|e| format!(" {}:{}", e.key.text, shape(&e.value)));
             format!("{{record{}}}", entries.collect::<String>())
         }
+        ExprKind::NamedTuple(a) => format!("<{}>", arguments(a)),
+        ExprKind::Iterate(iterate) => {
+            let states = |states: &[crate::ast::Let]| {
+                states.iter().map(|s| format!(" {}={}", s.name.text, shape(&s.value))).collect::<String>()
+            };
+            let condition =
+                iterate.condition.as_ref().map_or(String::new(), |c| format!(" while {}", shape(c)));
+            let (state, next) = (states(&iterate.state), states(&iterate.next));
+            format!("(iterate {} from{state}{condition} :{next})", shape(&iterate.count))
+        }
+        ExprKind::Keys(keys) => {
+            let list = keys.keys.iter().map(|(place, value)| format!(" {}:{}", shape(place), shape(value)));
+            let ease = keys.ease.as_ref().map_or(String::new(), |ease| format!(" ease:{}", shape(ease)));
+            format!("(keys {}{}{ease})", shape(&keys.at), list.collect::<String>())
+        }
     }
 }
 
@@ -111,6 +126,7 @@ fn the_tornado_has_its_seven_items() {
     let kinds: Vec<String> = items
         .iter()
         .map(|item| match item {
+            ItemKind::Import(import) => format!("import {}", import.alias.text),
             ItemKind::Param(param) => format!("param {}", param.name.text),
             ItemKind::Let(item) => format!("let {}", item.name.text),
             ItemKind::Function(function) => format!("fn {}", function.name.text),

@@ -7,6 +7,7 @@ use crate::ast::{
 };
 use crate::check::{CODES, check};
 use crate::diag::Diagnostic;
+use crate::module::Module;
 use crate::source::Span;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -26,7 +27,7 @@ fn file(value: Expr) -> File {
 
 /// Codes of the errors of `let a = value`, of a scene that has nothing to draw.
 fn codes(value: Expr) -> Vec<&'static str> {
-    let (_, diagnostics) = check(&file(value), &library());
+    let (_, diagnostics) = check(&[Module::root(file(value), "test.vol")], &library());
     diagnostics.iter().filter(|d| d.is_error() && d.code != "E0313").map(|d| d.code).collect()
 }
 
@@ -67,7 +68,7 @@ fn deepest_trees_of_the_parser_fit_the_stack() {
     for (open, close) in [("max(1, ", ")"), ("[", "].union()"), ("(1 + ", ")"), ("{ let b = ", "  b }")] {
         let source = format!("let a = {}1{}", open.repeat(depth), close.repeat(depth));
         let (file, _) = crate::parse::parse(&crate::source::SourceFile::new("deep.vol", source));
-        let (_, diagnostics) = check(&file, &library());
+        let (_, diagnostics) = check(&[Module::root(file, "test.vol")], &library());
         assert!(diagnostics.iter().all(|d| d.code != "E0226"), "{open}");
     }
 }
@@ -108,7 +109,7 @@ fn deep_type_is_an_error() {
     let function =
         crate::ast::Function { name: name("f"), params: vec![], result: ty, body: expr(ExprKind::Int(1)) };
     let item = Item { kind: ItemKind::Function(function), span: Span::default(), doc: String::new() };
-    let (_, diagnostics) = check(&File { items: vec![item] }, &library());
+    let (_, diagnostics) = check(&[Module::root(File { items: vec![item] }, "test.vol")], &library());
     assert_eq!(diagnostics[0].code, "E0226");
 }
 
@@ -122,7 +123,7 @@ fn many_items_and_mistakes_are_quick() {
     assert_eq!(diagnostics.iter().filter(|d| d.code == "E0201").count(), 1);
     let file =
         file(expr(ExprKind::List((0..20_000).map(|i| expr(ExprKind::Name(format!("name{i}")))).collect())));
-    let (_, diagnostics) = check(&file, &library());
+    let (_, diagnostics) = check(&[Module::root(file, "test.vol")], &library());
     assert_eq!(diagnostics.iter().filter(|d| d.code == "E0201").count(), 20_000);
 }
 

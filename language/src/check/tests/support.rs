@@ -2,9 +2,9 @@
 
 use crate::check::check;
 use crate::diag::{Diagnostic, Severity};
-use crate::hir::{ExprId, ExprKind, Over, Scene};
+use crate::hir::{self, ExprId, ExprKind, Over, Scene};
 use crate::library::{DefaultValue, Library, Parameter, Signature};
-use crate::parse::parse;
+use crate::module::{self, NoFiles};
 use crate::source::SourceFile;
 use crate::ty::Type;
 
@@ -83,9 +83,9 @@ pub(super) fn library() -> Library {
 
 /// Scene and diagnostics of a source without syntax errors.
 pub(super) fn checked(source: &str) -> (Scene, Vec<Diagnostic>) {
-    let (file, errors) = parse(&SourceFile::new("test.vol", source));
-    assert!(errors.is_empty(), "{errors:?}");
-    check(&file, &library())
+    let loaded = module::load(SourceFile::new("test.vol", source), &NoFiles);
+    assert!(loaded.diagnostics.is_empty(), "{:?}", loaded.diagnostics);
+    check(&loaded.modules, &library())
 }
 
 /// Items with an object beside them, so that the scene draws something.
@@ -182,6 +182,18 @@ fn operands(kind: &ExprKind) -> Vec<ExprId> {
         ExprKind::CallValue(callee, args) => args.iter().copied().chain([*callee]).collect(),
         ExprKind::Comprehension { over: Over::Range(a, b), body, .. } => vec![*a, *b, *body],
         ExprKind::Comprehension { over: Over::List(a), body, .. } => vec![*a, *body],
+        ExprKind::Iterate(iterate) => {
+            let first = iterate.state.iter().map(|(_, id)| *id);
+            first
+                .chain([iterate.count])
+                .chain(iterate.condition)
+                .chain(iterate.next.iter().copied())
+                .collect()
+        }
+        ExprKind::RecordField(of, _) => vec![*of],
+        ExprKind::Keys(keys) => keys.keys.iter().map(|(_, id)| *id).chain([keys.at]).collect(),
+        ExprKind::Choice(_, args) => args.iter().flatten().copied().collect(),
+        ExprKind::Settings(entries) => entries.iter().map(|(_, id)| *id).collect(),
         _ => vec![],
     }
 }
@@ -235,6 +247,35 @@ pub(super) fn show(scene: &Scene, id: ExprId) -> String {
         }
         ExprKind::Convert(conversion, inner) => {
             format!("{}!{conversion:?}({})", expr.ty, show(scene, *inner)).to_lowercase()
+        }
+        ExprKind::Iterate(iterate) => {
+            let first: Vec<String> = iterate
+                .state
+                .iter()
+                .map(|(local, id)| format!("%{} = {}", local.0, show(scene, *id)))
+                .collect();
+            let condition =
+                iterate.condition.map_or(String::new(), |id| format!(" while {}", show(scene, id)));
+            let count = show(scene, iterate.count);
+            format!("iterate {count} from ({}){condition}: ({})", first.join(", "), all(&iterate.next))
+        }
+        ExprKind::RecordField(of, index) => format!("{}.{index}:{}", show(scene, *of), expr.ty),
+        ExprKind::Keys(keys) => {
+            let shown = keys.keys.iter().map(|(place, id)| format!(", {place}: {}", show(scene, *id)));
+            let ease = match keys.ease {
+                hir::Ease::Curve(id) => show(scene, id),
+                word => format!("{word:?}"),
+            };
+            format!("keys({}{}, {ease})", show(scene, keys.at), shown.collect::<String>())
+        }
+        ExprKind::Choice(word, args) => {
+            let args = args.iter().map(|arg| arg.map_or("-".to_owned(), |id| show(scene, id)));
+            format!("`{word}`({})", args.collect::<Vec<_>>().join(", "))
+        }
+        ExprKind::BlockName(name) => format!("block {name}"),
+        ExprKind::Settings(entries) => {
+            let entries = entries.iter().map(|(key, id)| format!("{key}: {}", show(scene, *id)));
+            format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         }
         ExprKind::Error => "error".to_owned(),
     }

@@ -4,7 +4,9 @@
 //! also grows with every operator of a chain, is counted here and kept within [`MAX_DEPTH`].
 
 use super::{Parts, Rule, Unit, literal};
-use crate::ast::{Argument, BinaryOp, Entry, Expr, ExprKind, Let, Name, TypeExpr, TypeExprKind, UnaryOp};
+use crate::ast::{
+    Argument, BinaryOp, Entry, Expr, ExprKind, Iterate, Keys, Let, Name, TypeExpr, TypeExprKind, UnaryOp,
+};
 use crate::diag::Diagnostic;
 use crate::parse::{MAX_DEPTH, Report, explain};
 use crate::source::Span;
@@ -32,6 +34,9 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::negate) | Op::prefix(Rule::not))
         .op(Op::postfix(Rule::call) | Op::postfix(Rule::member) | Op::postfix(Rule::lambda_tail))
 });
+
+/// The word that begins a key-framed value; its arguments have places instead of names.
+const KEYS: &str = "keys";
 
 /// An expression with the height of its tree.
 struct Tree {
@@ -66,6 +71,15 @@ impl<'a> Lowerer<'a> {
 
     pub(super) fn name(&self, pair: &Pair<'_, Rule>) -> Name {
         Name { text: pair.as_str().to_owned(), span: self.span(pair) }
+    }
+
+    /// The value of a string and its place.
+    pub(super) fn text(&self, pair: &Pair<'_, Rule>) -> (String, Span) {
+        let span = self.span(pair);
+        match self.checked(literal::string(pair.as_str(), span)) {
+            ExprKind::String(text) => (text, span),
+            _ => (String::new(), span),
+        }
     }
 
     pub(super) fn type_expr(&self, pair: Pair<'_, Rule>) -> TypeExpr {
@@ -140,6 +154,7 @@ impl<'a> Lowerer<'a> {
             Rule::list => return self.list(pair),
             Rule::if_expr => return self.if_expr(pair),
             Rule::record => return self.record(pair),
+            Rule::iterate => return self.iterate(pair),
             Rule::block => return self.block_tree(pair),
             Rule::number => self.checked(literal::number(text, span)),
             Rule::color => self.checked(literal::color(text, span)),
@@ -166,12 +181,20 @@ impl<'a> Lowerer<'a> {
         (exprs.collect(), height)
     }
 
-    /// `(a)`, a vector, or the parameters of a function.
+    /// `(a)`, a vector, the parameters of a function, or settings with names.
     fn paren(&self, pair: Pair<'_, Rule>) -> Tree {
         let span = self.span(&pair);
-        let (exprs, tails): (Vec<_>, Vec<_>) =
-            pair.into_inner().partition(|pair| pair.as_rule() == Rule::expr);
-        let (mut exprs, height) = self.trees(exprs.into_iter());
+        let (inside, tails): (Vec<_>, Vec<_>) =
+            pair.into_inner().partition(|pair| pair.as_rule() == Rule::argument);
+        let (arguments, height) = self.arguments(inside.into_iter());
+        if arguments.iter().any(|argument| argument.name.is_some()) {
+            if let Some(tail) = tails.into_iter().next() {
+                self.report(explain::not_a_parameter(span));
+                return self.tree(Parts::of(tail).next());
+            }
+            return self.node(ExprKind::NamedTuple(arguments), span, height);
+        }
+        let mut exprs: Vec<Expr> = arguments.into_iter().map(|argument| argument.value).collect();
         if let Some(tail) = tails.into_iter().next() {
             return self.lambda(Expr { kind: ExprKind::Tuple(exprs), span }, tail);
         }
@@ -208,7 +231,10 @@ impl<'a> Lowerer<'a> {
 
     fn call(&self, callee: Tree, call: Pair<'_, Rule>) -> Tree {
         let span = callee.expr.span.to(self.span(&call));
-        let (arguments, height) = self.arguments(call);
+        if matches!(&callee.expr.kind, ExprKind::Name(name) if name == KEYS) {
+            return self.keys(None, call, span);
+        }
+        let (arguments, height) = self.arguments(call.into_inner());
         let kind = ExprKind::Call(Box::new(callee.expr), arguments);
         self.node(kind, span, height.max(callee.height))
     }
@@ -220,28 +246,97 @@ impl<'a> Lowerer<'a> {
         let Some(call) = parts.next_if(Rule::call) else {
             return self.node(ExprKind::Field(Box::new(object.expr), name), span, object.height);
         };
-        let (arguments, height) = self.arguments(call);
+        if name.text == KEYS {
+            return self.keys(Some(object), call, span);
+        }
+        let (arguments, height) = self.arguments(call.into_inner());
         let kind = ExprKind::MethodCall(Box::new(object.expr), name, arguments);
         self.node(kind, span, height.max(object.height))
     }
 
-    fn arguments(&self, call: Pair<'_, Rule>) -> (Vec<Argument>, usize) {
+    fn arguments<'i>(&self, pairs: impl Iterator<Item = Pair<'i, Rule>>) -> (Vec<Argument>, usize) {
         let mut height = 0;
-        let arguments = call.into_inner().map(|pair| {
-            let mut parts = Parts::of(pair);
-            let mut value = self.tree(parts.next());
-            let mut name = None;
-            if parts.has(Rule::expr) {
-                let before = std::mem::replace(&mut value, self.tree(parts.next())).expr;
-                match before.kind {
-                    ExprKind::Name(text) => name = Some(Name { text, span: before.span }),
-                    _ => self.report(explain::not_an_argument_name(before.span)),
+        let arguments = pairs.map(|pair| {
+            let (before, value, below) = self.argument(pair);
+            height = height.max(below);
+            let name = before.and_then(|before| match before.kind {
+                ExprKind::Name(text) => Some(Name { text, span: before.span }),
+                _ => {
+                    self.report(explain::not_an_argument_name(before.span));
+                    None
                 }
-            }
-            height = height.max(value.height);
-            Argument { name, value: value.expr }
+            });
+            Argument { name, value }
         });
         (arguments.collect(), height)
+    }
+
+    /// What stands before the colon if there is one, the value, and the greater height.
+    fn argument(&self, pair: Pair<'_, Rule>) -> (Option<Expr>, Expr, usize) {
+        let mut parts = Parts::of(pair);
+        let first = self.tree(parts.next());
+        if !parts.has(Rule::expr) {
+            return (None, first.expr, first.height);
+        }
+        let value = self.tree(parts.next());
+        (Some(first.expr), value.expr, first.height.max(value.height))
+    }
+
+    /// `keys(at, place: value, …, ease: word)`; as a method the receiver is what runs along the keys.
+    fn keys(&self, receiver: Option<Tree>, call: Pair<'_, Rule>, span: Span) -> Tree {
+        let call_span = self.span(&call);
+        let mut height = receiver.as_ref().map_or(0, |receiver| receiver.height);
+        let mut at = receiver.map(|receiver| receiver.expr);
+        let mut keys = Vec::new();
+        let mut ease = None;
+        for pair in call.into_inner() {
+            let (before, value, below) = self.argument(pair);
+            height = height.max(below);
+            match before {
+                Some(before) if matches!(&before.kind, ExprKind::Name(name) if name == "ease") => {
+                    ease = Some(value);
+                }
+                Some(place) => keys.push((place, value)),
+                None if at.is_none() => at = Some(value),
+                None => self.report(explain::not_a_key(value.span)),
+            }
+        }
+        let at = at.unwrap_or_else(|| {
+            self.report(explain::empty_keys(call_span));
+            Expr { kind: ExprKind::Int(0), span: call_span }
+        });
+        self.node(ExprKind::Keys(Box::new(Keys { at, keys, ease })), span, height)
+    }
+
+    fn iterate(&self, pair: Pair<'_, Rule>) -> Tree {
+        let span = self.span(&pair);
+        let mut parts = Parts::of(pair);
+        parts.next_if(Rule::kw_iterate);
+        let count = self.tree(parts.next());
+        parts.next_if(Rule::kw_from);
+        let (state, state_height) = self.states(parts.next());
+        let condition = parts.next_if(Rule::kw_while).map(|_| self.tree(parts.next()));
+        parts.next_if(Rule::colon);
+        let (next, next_height) = self.states(parts.next());
+        let condition_height = condition.as_ref().map_or(0, |condition| condition.height);
+        let height = count.height.max(state_height).max(next_height).max(condition_height);
+        let condition = condition.map(|condition| condition.expr);
+        let iterate = Iterate { count: count.expr, state, condition, next };
+        self.node(ExprKind::Iterate(Box::new(iterate)), span, height)
+    }
+
+    /// `(z = …, dr = …)`
+    fn states(&self, pair: Pair<'_, Rule>) -> (Vec<Let>, usize) {
+        let mut height = 0;
+        let states = pair.into_inner().map(|pair| {
+            let mut parts = Parts::of(pair);
+            let name = self.name(&parts.next());
+            parts.next_if(Rule::equals);
+            let value = self.tree(parts.next());
+            height = height.max(value.height);
+            Let { name, value: value.expr }
+        });
+        (states.collect(), height)
     }
 
     fn list(&self, pair: Pair<'_, Rule>) -> Tree {

@@ -8,7 +8,6 @@ use crate::parse::guard::is_block_word;
 use crate::parse::scan::{Kind, Token};
 use crate::parse::split::{self, Separator};
 use crate::parse::{Report, Source, explain};
-use crate::source::Span;
 
 /// Reads one item; `None` if it has errors, which are then in `report`.
 pub(in crate::parse) fn item(
@@ -22,10 +21,7 @@ pub(in crate::parse) fn item(
         "let" => binding(&unit, report).map(ast::ItemKind::Let),
         "param" => param(&unit, report).map(ast::ItemKind::Param),
         "fn" => function(&unit, report).map(ast::ItemKind::Function),
-        word @ ("import" | "style") => {
-            report.add(explain::unsupported(header(source, tokens), word));
-            None
-        }
+        "import" => import(&unit, report).map(ast::ItemKind::Import),
         word if is_block_word(word) => block(&unit, report).map(ast::ItemKind::Block),
         word => {
             if !report.is_broken(first.span()) {
@@ -37,14 +33,17 @@ pub(in crate::parse) fn item(
     }
 }
 
-/// The item up to its first bracket.
-fn header(source: &Source<'_>, tokens: &[Token]) -> Span {
-    let length = tokens.iter().take_while(|token| token.text(source.text) != "{").count();
-    split::cover(&tokens[..length])
+fn import(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Import> {
+    let mut parts = Parts { pairs: unit.parse(Rule::import_unit, report)? };
+    let lowerer = Lowerer::new(unit, report);
+    parts.next_if(Rule::kw_import);
+    let (path, path_span) = lowerer.text(&parts.next());
+    parts.next_if(Rule::kw_as);
+    let alias = lowerer.name(&parts.next());
+    Some(ast::Import { path, path_span, alias })
 }
 
 fn binding(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Let> {
-    unsupported_calls(unit, report)?;
     let mut parts = Parts { pairs: unit.parse(Rule::let_unit, report)? };
     let lowerer = Lowerer::new(unit, report);
     parts.next_if(Rule::kw_let);
@@ -55,7 +54,6 @@ fn binding(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Let> {
 }
 
 fn param(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Param> {
-    unsupported_calls(unit, report)?;
     let mut parts = Parts { pairs: unit.parse(Rule::param_unit, report)? };
     let lowerer = Lowerer::new(unit, report);
     parts.next_if(Rule::kw_param);
@@ -76,7 +74,6 @@ fn param(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Param> {
 }
 
 fn function(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Function> {
-    unsupported_calls(unit, report)?;
     let mut parts = Parts { pairs: unit.parse(Rule::fn_unit, report)? };
     let lowerer = Lowerer::new(unit, report);
     parts.next_if(Rule::kw_fn);
@@ -148,33 +145,7 @@ fn entries(unit: &Unit<'_>, inside: &[Token], report: &mut Report) -> Vec<ast::E
 }
 
 fn entry(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Entry> {
-    unsupported_calls(unit, report)?;
     let mut parts = Parts { pairs: unit.parse(Rule::entry_unit, report)? };
     let lowerer = Lowerer::new(unit, report);
     Some(lowerer.entry(parts.next()))
-}
-
-/// Reports `iterate …` and `keys(…)`; `None` if there are any.
-fn unsupported_calls(unit: &Unit<'_>, report: &mut Report) -> Option<()> {
-    let text = unit.source.text;
-    let word = |index: usize| unit.tokens.get(index).map_or("", |token| token.text(text));
-    let mut found = false;
-    for (i, token) in unit.tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::Word) {
-        let next = unit.tokens.get(i + 1);
-        let is_new = i == 0 || !matches!(word(i - 1), "." | "let" | "param" | "fn");
-        let unsupported = match token.text(text) {
-            "keys" => word(i + 1) == "(",
-            "iterate" => next.is_some_and(|next| match next.kind {
-                Kind::Word => !matches!(next.text(text), "then" | "else" | "in"),
-                Kind::Number => true,
-                _ => next.text(text) == "(",
-            }),
-            _ => false,
-        };
-        if unsupported && is_new {
-            report.add(explain::unsupported(token.span(), token.text(text)));
-            found = true;
-        }
-    }
-    (!found).then_some(())
 }

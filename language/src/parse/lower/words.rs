@@ -13,12 +13,12 @@ pub(super) fn words(rule: Rule) -> &'static str {
         | Rule::not
         | Rule::number
         | Rule::color
-        | Rule::string
         | Rule::boolean
         | Rule::if_expr
         | Rule::paren
         | Rule::list
         | Rule::record
+        | Rule::iterate
         | Rule::range
         | Rule::argument => "an expression",
         Rule::infix
@@ -42,6 +42,7 @@ pub(super) fn words(rule: Rule) -> &'static str {
         | Rule::member
         | Rule::lambda_tail
         | Rule::range_to => OPERATOR,
+        Rule::string => "a string",
         Rule::name => "a name",
         Rule::type_expr | Rule::list_type | Rule::function_type => "a type",
         Rule::entry => "a key",
@@ -55,6 +56,13 @@ pub(super) fn words(rule: Rule) -> &'static str {
         Rule::kw_param => "`param`",
         Rule::kw_fn => "`fn`",
         Rule::kw_in => "`in`",
+        Rule::kw_import => "`import`",
+        Rule::kw_as => "`as`",
+        Rule::kw_iterate => "`iterate`",
+        Rule::kw_from => "`from`",
+        Rule::kw_while => "`while`",
+        Rule::states => "`(`",
+        Rule::state => "a name",
         Rule::kw_for | Rule::comprehension => "`for`",
         Rule::kw_if => "`if`",
         Rule::kw_then => "`then`",
@@ -64,6 +72,7 @@ pub(super) fn words(rule: Rule) -> &'static str {
         | Rule::word_char
         | Rule::dot
         | Rule::reserved
+        | Rule::import_unit
         | Rule::let_unit
         | Rule::param_unit
         | Rule::fn_unit

@@ -8,7 +8,7 @@ use crate::source::SourceFile;
 /// Code, message and help of each error, and the text that its first label marks.
 fn errors(text: &str) -> Vec<(String, String, String)> {
     let (_, diagnostics) = read(text);
-    let rendered = human(&SourceFile::new("test.vol", text), &diagnostics, false);
+    let rendered = human(&SourceFile::new("test.vol", text).into(), &diagnostics, false);
     assert!(!rendered.is_empty() || diagnostics.is_empty());
     let all = diagnostics.into_iter().map(|d| {
         assert!(CODES.iter().any(|(code, _)| *code == d.code), "{} is not listed", d.code);
@@ -157,14 +157,12 @@ fn items() {
     assert_eq!(one("a = 5", "E0113 `a` does not begin an item", "a"), "write `let a = …`");
     one("5 + 3", "E0113 `5` does not begin an item", "5");
     assert_eq!(errors("let a = 1\nball b { c: 1 }\nlet d = 2").len(), 1);
-    one("style mood { light: sun }", "E0114 this version does not support `style` yet", "style mood");
-    one("import \"a.vol\" as a", "E0114 this version does not support `import` yet", "import \"a.vol\" as a");
-    one("let a = keys(time, 0s: 1)", "E0114 this version does not support `keys` yet", "keys");
-    one(
-        "let a = p => iterate 8 from (z = p) while z < 1: (z = z)",
-        "E0114 this version does not support `iterate` yet",
-        "iterate",
-    );
+    one("import \"a.vol\"", "E0102 expected `as` after a string", "\"a.vol\"");
+    one("import a as b", "E0102 expected a string, found `a`", "a");
+    one("let a = keys(time, 1)", "E0102 expected `:` after the place of a key", "1");
+    one("let a = keys()", "E0102 expected what runs along the keys", "()");
+    one("let a = iterate 8 from z: (z = 1)", "E0102 expected `(`, found `z`", "z");
+    one("let a = iterate 8 from (z = 1)", "E0102 expected `while` or `:`, found the end of the item", "");
     one("camera { fov: 40deg, at: a up: b }", "E0105 two entries share a line without a comma", "up");
     one("let a = { b: 1 c: 2 }", "E0105 two entries share a line without a comma", "c");
 }

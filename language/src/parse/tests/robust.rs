@@ -196,7 +196,7 @@ fn mutated_scenes_never_panic() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         let (_, diagnostics) = read(&text);
-        let _ = human(&SourceFile::new("fuzz.vol", text), &diagnostics, case % 2 == 0);
+        let _ = human(&SourceFile::new("fuzz.vol", text).into(), &diagnostics, case % 2 == 0);
     }
 }
 

@@ -1,0 +1,71 @@
+//! Key-framed values: piecewise between the keys, constant before the first and after the last.
+
+use super::value::Value;
+use super::{Lowered, Lowerer};
+use crate::ir::ValueId;
+use crate::ir::graph::Graph;
+use crate::ops::Op;
+use vol_language::hir::{Ease, Keys};
+
+impl Lowerer<'_> {
+    /// The value at a place along the keys.
+    pub(crate) fn keys(&mut self, keys: &Keys) -> Lowered<Value> {
+        let at = self.expr(keys.at)?.scalar();
+        let mut frames: Vec<(f64, Value)> = Vec::with_capacity(keys.keys.len());
+        for &(place, value) in &keys.keys {
+            frames.push((place, self.expr(value)?));
+        }
+        let Some((_, first)) = frames.first() else { unreachable!("the checker asks for a key") };
+        let mut result = first.numbers().to_vec();
+        for pair in frames.windows(2) {
+            let [(start, before), (end, after)] = pair else { unreachable!("windows of two") };
+            let share = self.share(at, *start, *end, keys.ease)?;
+            let graph = &mut self.graph;
+            let place = graph.number(*start);
+            // From its key on a segment replaces what came before.
+            let reached = graph.apply(Op::LessEqual, &[place, at]);
+            for (i, slot) in result.iter_mut().enumerate() {
+                let value = mixed(graph, before.numbers()[i], after.numbers()[i], share);
+                *slot = graph.select(reached, value, *slot);
+            }
+        }
+        Ok(Value::Numbers(result))
+    }
+
+    /// The share of the next key, eased: 0 at `start`, 1 from `end` on.
+    fn share(&mut self, at: ValueId, start: f64, end: f64, ease: Ease) -> Lowered<ValueId> {
+        let graph = &mut self.graph;
+        let (zero, one) = (graph.number(0.0), graph.number(1.0));
+        let (from, length) = (graph.number(start), graph.number(end - start));
+        let passed = graph.sub(at, from);
+        let share = graph.div(passed, length);
+        let share = graph.max(share, zero);
+        let share = graph.min(share, one);
+        match ease {
+            Ease::Linear => Ok(share),
+            Ease::Smooth => {
+                let (two, three) = (graph.number(2.0), graph.number(3.0));
+                let doubled = graph.mul(two, share);
+                let bend = graph.sub(three, doubled);
+                let squared = graph.mul(share, share);
+                Ok(graph.mul(squared, bend))
+            }
+            Ease::Hold => {
+                let done = graph.apply(Op::LessEqual, &[one, share]);
+                Ok(graph.select(done, one, zero))
+            }
+            Ease::Curve(function) => {
+                let closure = self.expr(function)?.function();
+                Ok(self.call_numbers(&closure, &[share])?.scalar())
+            }
+        }
+    }
+}
+
+/// `a + (b - a) share`, written as a sum of products, which is exact at 0 and 1.
+fn mixed(graph: &mut Graph, a: ValueId, b: ValueId, share: ValueId) -> ValueId {
+    let one = graph.number(1.0);
+    let rest = graph.sub(one, share);
+    let (a, b) = (graph.mul(a, rest), graph.mul(b, share));
+    graph.add(a, b)
+}

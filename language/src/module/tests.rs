@@ -1,0 +1,1 @@
+//! Imports: what is found, and every way in which they go wrong.

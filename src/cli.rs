@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Render(Render),
     /// Report the mistakes in scenes without rendering them
     Check(Check),
+    /// List the params of a scene: type, default, range and label
+    Params(Params),
     /// Translate a scene to a shader
     Compile(Compile),
     /// Evaluate a field of a scene at given points
@@ -44,6 +46,12 @@ pub(crate) struct Scene {
     /// Moment of the animation: `2s`, `500ms`, `1.5` (seconds) [default: 0s]
     #[arg(long, value_parser = values::time, allow_negative_numbers = true)]
     pub(crate) time: Option<f64>,
+    /// Leave out all objects and media but these; may be given several times
+    #[arg(long, value_name = "NAME")]
+    pub(crate) only: Vec<String>,
+    /// Leave out this object or medium; may be given several times
+    #[arg(long, value_name = "NAME", conflicts_with = "only")]
+    pub(crate) hide: Vec<String>,
 }
 
 /// Arguments of `vol render`.
@@ -88,6 +96,16 @@ pub(crate) struct Check {
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// `human` writes to stderr, `json` to stdout
+    #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
+    pub(crate) message_format: MessageFormat,
+}
+
+/// Arguments of `vol params`.
+#[derive(Debug, Args)]
+pub(crate) struct Params {
+    /// The scene script
+    pub(crate) scene: PathBuf,
+    /// `human` writes a line per param, `json` one list
     #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
     pub(crate) message_format: MessageFormat,
 }

@@ -6,6 +6,7 @@
 mod check;
 mod compile;
 mod diff;
+mod params;
 mod progress;
 mod query;
 mod render;
@@ -20,6 +21,7 @@ use vol::failure::{Failure, Message};
 use vol::output::atomic;
 use vol::session::{Moment, Session};
 use vol_compiler::frame::Frame;
+use vol_compiler::lints;
 use vol_language::diag::{self, Diagnostic};
 use vol_language::source::Sources;
 
@@ -36,6 +38,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Params(arguments) => params::run(arguments),
         Command::Compile(arguments) => compile::run(arguments),
         Command::Query(arguments) => query::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
@@ -87,7 +90,8 @@ struct Prepared {
 
 impl Prepared {
     fn new(arguments: &cli::Scene) -> Result<Self, Failure> {
-        let session = load(&arguments.scene)?;
+        let mut session = load(&arguments.scene)?;
+        session.restrict(&arguments.only, &arguments.hide)?;
         let params = session.params(&arguments.define)?;
         let moment = session.moment_at(&params, arguments.time.unwrap_or(0.0))?;
         Ok(Self { session, params, moment })
@@ -95,6 +99,13 @@ impl Prepared {
 
     fn frame(&self, size: [u32; 2]) -> Result<Frame, Failure> {
         self.session.frame(&self.params, self.moment, size)
+    }
+
+    /// Shows what is suspicious at this moment.
+    fn show_suspicions(&self) -> Result<(), Failure> {
+        let frame = self.frame(self.session.program.render.size)?;
+        print_diagnostics(&self.session.sources, &lints::warnings(&self.session.program, &frame));
+        Ok(())
     }
 }
 

@@ -6,6 +6,8 @@
 
 mod params;
 
+pub use params::written;
+
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -139,6 +141,27 @@ impl Session {
     /// A usage failure for an unknown param, or a value that is not of its type or range.
     pub fn params(&self, definitions: &[(String, String)]) -> Result<Vec<Vec<f64>>, Failure> {
         params::values(&self.program.params, definitions)
+    }
+
+    /// Leaves out objects and media: all but `only`, if that names any, and those that `hide` names.
+    ///
+    /// # Errors
+    /// A usage failure for a name that no object and no medium has.
+    pub fn restrict(&mut self, only: &[String], hide: &[String]) -> Result<(), Failure> {
+        let Program { objects, media, .. } = &mut self.program;
+        let names: Vec<&str> =
+            objects.iter().map(|o| o.name.as_str()).chain(media.iter().map(|m| m.name.as_str())).collect();
+        if let Some(unknown) = only.iter().chain(hide).find(|name| !names.contains(&name.as_str())) {
+            let failure = Failure::usage(format!("the scene has no object and no medium `{unknown}`"));
+            return Err(match nearest(unknown, names.iter().copied()) {
+                Some(near) => failure.with_help(format!("did you mean `{near}`?")),
+                None => failure.with_help(format!("it has: {}", names.join(", "))),
+            });
+        }
+        let stays = |name: &String| (only.is_empty() || only.contains(name)) && !hide.contains(name);
+        objects.retain(|object| stays(&object.name));
+        media.retain(|medium| stays(&medium.name));
+        Ok(())
     }
 
     /// The scene at one moment, framed for a picture of `size` pixels.

@@ -14,6 +14,7 @@ pub mod error_bound;
 pub mod frame;
 pub mod ir;
 pub mod library;
+pub mod lints;
 pub mod lower;
 pub mod noise_table;
 pub mod ops;

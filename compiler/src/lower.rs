@@ -177,6 +177,7 @@ impl<'a> Lowerer<'a> {
             ty: param.ty.clone(),
             default: param.default.clone(),
             range: param.range,
+            label: param.doc.clone(),
             first_input,
         });
         Program {

@@ -55,6 +55,8 @@ pub struct Param {
     pub default: Vec<f64>,
     /// Allowed range of a scalar.
     pub range: Option<(f64, f64)>,
+    /// What its doc comment says: the label of its slider.
+    pub label: String,
     /// First input of the frame function that it sets.
     pub first_input: u32,
 }

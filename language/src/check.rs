@@ -82,7 +82,7 @@ pub fn check(modules: &[Module], library: &Library) -> (hir::Scene, Vec<Diagnost
     let uses = names::uses(modules, &checker.globals, checker.items.len());
     checker.diagnostics.extend(uses.warnings);
     checker.warn_unused(&uses.used);
-    checker.check_library(&uses.library);
+    checker.check_library(&uses.mentioned);
     let (order, cycles) = order::sort(&uses.edges);
     for cycle in &cycles {
         checker.report_cycle(cycle);

@@ -50,9 +50,9 @@ pub fn parse(file: &SourceFile) -> (ast::File, Vec<Diagnostic>) {
         if report.is_full() {
             break;
         }
-        let before = report.diagnostics.len();
+        let before = report.errors;
         let kind = lower::item(&source, raw.tokens, &mut report);
-        if let Some(kind) = kind.filter(|_| report.diagnostics.len() == before) {
+        if let Some(kind) = kind.filter(|_| report.errors == before) {
             items.push(ast::Item { kind, span: raw.span(), doc: raw.doc });
         }
     }
@@ -75,6 +75,8 @@ struct Source<'a> {
 #[derive(Default)]
 struct Report {
     diagnostics: Vec<Diagnostic>,
+    /// How many of them are errors, those past the limit included.
+    errors: usize,
     /// Offsets of errors that make the grammar's opinion on their surroundings worthless.
     broken: Vec<u32>,
 }
@@ -85,6 +87,7 @@ impl Report {
     }
 
     fn add(&mut self, diagnostic: Diagnostic) {
+        self.errors += usize::from(diagnostic.is_error());
         if self.diagnostics.len() < MAX_ERRORS {
             self.diagnostics.push(diagnostic);
         } else if !self.is_full() {

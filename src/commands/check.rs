@@ -5,6 +5,7 @@ use std::path::Path;
 
 use vol::failure::Failure;
 use vol::session::{self, Session};
+use vol_compiler::lints;
 use vol_compiler::program::Program;
 use vol_language::diag::{self, Diagnostic};
 use vol_language::source::Sources;
@@ -55,7 +56,10 @@ fn with_first_frame(mut session: Session) -> Result<Session, Failure> {
     let params = session.params(&[])?;
     let moment = session.moment_at(&params, 0.0)?;
     match session.frame(&params, moment, session.program.render.size) {
-        Ok(_) => Ok(session),
+        Ok(frame) => {
+            session.warnings.extend(lints::warnings(&session.program, &frame));
+            Ok(session)
+        }
         Err(Failure::Scene { sources, diagnostics }) => {
             session.warnings.extend(diagnostics);
             Err(Failure::Scene { sources, diagnostics: session.warnings })

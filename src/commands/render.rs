@@ -23,6 +23,7 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
         limit_threads(threads.into())?;
     }
     let prepared = Prepared::new(&arguments.scene)?;
+    prepared.show_suspicions()?;
     let device = Device::open(match arguments.backend {
         cli::Backend::Cpu => Choice::Cpu,
         cli::Backend::Gpu => Choice::Gpu,

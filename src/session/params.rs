@@ -41,7 +41,7 @@ fn unknown(name: &str, params: &[Param]) -> Failure {
 fn value(param: &Param, text: &str) -> Result<Vec<f64>, Failure> {
     let refused = |why: &str| {
         let Param { name, ty, default, .. } = param;
-        let help = format!("`{name}` is of type {ty}, for example -D '{name}={}'", show(ty, default));
+        let help = format!("`{name}` is of type {ty}, for example -D '{name}={}'", written(ty, default));
         Failure::usage(format!("cannot set `{name}` to `{text}`: {why}")).with_help(help)
     };
     // Params of imported files have a dot in their names.
@@ -58,8 +58,8 @@ fn value(param: &Param, text: &str) -> Result<Vec<f64>, Failure> {
     if let (Some((lo, hi)), [number]) = (param.range, value.as_slice())
         && !(lo..=hi).contains(number)
     {
-        let [lo, hi] = [lo, hi].map(|end| show(&param.ty, &[end]));
-        let text = format!("`{}` must be in {lo}..{hi}, not {}", param.name, show(&param.ty, &value));
+        let [lo, hi] = [lo, hi].map(|end| written(&param.ty, &[end]));
+        let text = format!("`{}` must be in {lo}..{hi}, not {}", param.name, written(&param.ty, &value));
         return Err(Failure::usage(text));
     }
     Ok(value)
@@ -78,7 +78,7 @@ fn is_bare(scene: &hir::Scene) -> bool {
 }
 
 /// A value as the language writes it, to six digits.
-fn show(ty: &Type, value: &[f64]) -> String {
+pub fn written(ty: &Type, value: &[f64]) -> String {
     let number = |x: &f64| format!("{}", (x * 1e6).round() / 1e6);
     match (ty, value) {
         (Type::Bool, [x]) => (*x != 0.0).to_string(),
@@ -101,6 +101,7 @@ mod tests {
             ty,
             default: default.to_vec(),
             range,
+            label: String::new(),
             first_input: 2,
         };
         vec![

@@ -7,6 +7,8 @@ use vol_compiler::frame::{Frame, Image, Job};
 pub(crate) use vol_compiler::ir::verify::random::Random;
 use vol_compiler::ir::{Function, FunctionId, Module};
 use vol_compiler::program::Program;
+use vol_language::Analysis;
+use vol_language::module::Loader;
 use vol_language::source::SourceFile;
 
 /// The scenes of `examples/`, in alphabetical order.
@@ -38,20 +40,36 @@ pub(crate) fn compile(name: &str, text: &str) -> Result<Program, Failed> {
 /// Analyses and compiles a scene text and renders what there is to say about it.
 pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>, String) {
     let file = SourceFile::new(name, text);
-    let (scene, mut diagnostics) = vol_language::analyse(&file, &vol_compiler::library::library());
+    let Analysis { scene, mut diagnostics, sources } =
+        vol_language::analyse_with(file, &vol_compiler::library::library(), &Shared);
     let mut program = None;
     if let Some(scene) = scene {
         let (compiled, more) = vol_compiler::lower::compile(&scene);
         program = compiled;
         diagnostics.extend(more);
     }
-    if let Some(ready) = &program
-        && let Err(diagnostic) = ready.frame(&ready.default_params(), 0.0, 0.0, ready.render.size)
-    {
-        diagnostics.push(diagnostic);
-        program = None;
+    let frame =
+        program.as_ref().map(|ready| ready.frame(&ready.default_params(), 0.0, 0.0, ready.render.size));
+    match (&program, frame) {
+        (Some(ready), Some(Ok(frame))) => diagnostics.extend(vol_compiler::lints::warnings(ready, &frame)),
+        (_, Some(Err(diagnostic))) => {
+            diagnostics.push(diagnostic);
+            program = None;
+        }
+        (_, None | Some(Ok(_))) => {}
     }
-    (program, vol_language::diag::render::human(&file.into(), &diagnostics, false))
+    (program, vol_language::diag::render::human(&sources, &diagnostics, false))
+}
+
+/// Imports come from `tests/ui`.
+struct Shared;
+
+impl Loader for Shared {
+    fn read(&self, path: &str) -> Result<SourceFile, String> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ui").join(path);
+        let text = std::fs::read_to_string(file).map_err(|_| "no such file".to_owned())?;
+        Ok(SourceFile::new(path, text))
+    }
 }
 
 /// Compiles a file of the repository.

@@ -66,7 +66,6 @@ const ELEMENTWISE: &[Row] = &[
     ("step", &["edge", "x"], "0 below the edge, else 1", step),
     ("smoothstep", &["lo", "hi", "x"], "smooth rise from 0 at lo to 1 at hi", smoothstep),
     ("falloff", &["lo", "hi", "x"], "smooth fall from 1 at lo to 0 at hi", falloff),
-    ("bias", &["x", "amount"], "moves the middle of 0..1 while the ends stay; amount in -1..1", bias),
 ];
 
 /// The same for angles.
@@ -294,16 +293,6 @@ fn falloff(graph: &mut Graph, args: &[ValueId]) -> ValueId {
     let one = graph.number(1.0);
     let rise = smoothstep(graph, args);
     graph.sub(one, rise)
-}
-
-/// `x^((b - 1) / (-b - 1))`, b kept within ±0.999.
-fn bias(graph: &mut Graph, args: &[ValueId]) -> ValueId {
-    let (lo, hi, one) = (graph.number(-0.999), graph.number(0.999), graph.number(1.0));
-    let amount = clamp(graph, &[args[1], lo, hi]);
-    let above = graph.sub(one, amount);
-    let below = graph.add(one, amount);
-    let exponent = graph.div(above, below);
-    pow(graph, &[args[0], exponent])
 }
 
 fn tan(graph: &mut Graph, args: &[ValueId]) -> ValueId {

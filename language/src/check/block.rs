@@ -128,14 +128,17 @@ impl<'a> Checker<'a> {
     pub(super) fn report_key(&mut self, entry: &'a Entry, owner: &str, keys: &[Key]) {
         let text = &entry.key.text;
         let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
-        let help = match self.suggest(text, |_| known.clone()) {
+        let near = self.suggest(text, |_| known.clone());
+        let help = match &near {
             Some(near) => format!("did you mean `{near}`"),
             None => format!("the keys are `{}`", known.join("`, `")),
         };
         let message = format!("{owner} no key `{text}`");
         self.report(Diagnostic::error("E0302", message, entry.key.span, "no such key").with_help(help));
         // The value may have mistakes of its own, unless only its key could say what it is.
-        if !self.is_deferred(&entry.value) && !matches!(entry.value.kind, ExprKind::Record(_)) {
+        if let Some(key) = keys.iter().find(|key| near.as_deref() == Some(key.name)) {
+            self.expect(&entry.value, &key.ty, Role::Key(key.name));
+        } else if !self.is_deferred(&entry.value) && !matches!(entry.value.kind, ExprKind::Record(_)) {
             self.infer(&entry.value);
         }
     }

@@ -77,7 +77,9 @@ impl<'a> Checker<'a> {
                 let callee = self.name(name, name_span);
                 return self.call_value(callee, args, span);
             }
-        } else if let Some(index) = self.item_named(name) {
+        } else if let Some(index) = self.item_named(name)
+            && (!is_library || self.can_be_called(index))
+        {
             return self.call_item(name, index, name_span, args, span);
         }
         if construct::is_constructor(name) {
@@ -92,6 +94,17 @@ impl<'a> Checker<'a> {
         }
         self.unknown_function(name, name_span);
         self.abandon(&args, span)
+    }
+
+    /// Whether an item is a function or holds one; true for what was reported.
+    fn can_be_called(&self, index: usize) -> bool {
+        match &self.items[index].kind {
+            Kind::Param { .. } => false,
+            Kind::Let { id, .. } => id.is_none_or(|id| {
+                matches!(self.ty(self.scene.lets[id.index()].value), Type::Function(_) | Type::Error)
+            }),
+            Kind::Function { .. } => true,
+        }
     }
 
     /// A call of an item of this or an imported file.

@@ -141,6 +141,9 @@ impl<'a> Checker<'a> {
         };
         let help = match (self.suggest(name, known), &known(self)[..]) {
             (Some(near), _) => format!("did you mean `{near}`"),
+            (None, []) if self.block_names.contains_key(name) => {
+                format!("the scene has no {keyword} with a name")
+            }
             (None, []) => format!("add a block: `{keyword} {name} {{ … }}`"),
             (None, names) => format!("the scene has `{}`", names.join("`, `")),
         };

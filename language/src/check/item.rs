@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::convert::Role;
-use super::names::open_names;
+use super::names::mentioned;
 use super::{BUILT_IN_VALUES, construct};
 use crate::ast::{self, ItemKind, Name, TypeExpr, TypeExprKind};
 use crate::blocks::BLOCK_KINDS;
@@ -79,10 +79,10 @@ impl<'a> Checker<'a> {
                 }
             };
             let text = name.text.as_str();
-            if BUILT_IN_VALUES.contains(&text)
-                || construct::is_constructor(text)
-                || self.builtins.contains_key(text)
-            {
+            // A value may be called like a function of the library, which it does not hide.
+            let is_library = construct::is_constructor(text) || self.builtins.contains_key(text);
+            let is_function = matches!(kind, Kind::Function { .. });
+            if BUILT_IN_VALUES.contains(&text) || (is_library && is_function) {
                 self.report_taken(name);
             } else if let Some(first) = self.item_named(text) {
                 let first = self.items[first].name.span;
@@ -132,7 +132,7 @@ impl<'a> Checker<'a> {
         // A function only uses earlier ones, so that from the end all its users are known.
         for (index, function) in functions.iter().enumerate().rev() {
             if wanted.contains(function.name.text.as_str()) {
-                wanted.extend(open_names(function));
+                wanted.extend(mentioned(function));
                 used.push(index);
             }
         }

@@ -78,8 +78,13 @@ impl<'a> Checker<'a> {
                 }
             }
         }
+        // A misspelt name is not missing as well.
+        let all_known = iterate
+            .next
+            .iter()
+            .all(|next| iterate.state.iter().any(|state| state.name.text == next.name.text));
         for (state, value) in iterate.state.iter().zip(&values) {
-            if value.is_none() {
+            if value.is_none() && all_known {
                 let name = &state.name.text;
                 let message = format!("the loop gives `{name}` no next value");
                 let error =

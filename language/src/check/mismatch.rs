@@ -74,7 +74,8 @@ impl<'a> Checker<'a> {
             (Type::Vec3 | Type::Color, Type::Vec4) => Some(format!("write `vec4({text}, 0)`")),
             (Type::Record(record), to) => {
                 let fits = record.fields.iter().find(|(_, ty)| super::convert::cost(ty, to).is_some());
-                fits.map(|(name, _)| format!("read a value of the last step: `{text}.{name}`"))
+                let (name, _) = fits.or(record.fields.first())?;
+                Some(format!("name a part of the loop's last state: `{text}.{name}`"))
             }
             (Type::Local, Type::Vec3) => Some(format!("write `{text}.local`, or `{text}.world`")),
             (Type::Int | Type::Float, Type::Bool) if self.is_literal(id) => {

@@ -17,8 +17,8 @@ pub(super) struct Uses {
     pub(super) edges: Vec<Vec<Use>>,
     /// Whether anything uses the item.
     pub(super) used: Vec<bool>,
-    /// Names that are neither bound nor an item: those of the library's functions among them.
-    pub(super) library: HashSet<String>,
+    /// All names that stand anywhere: those of the library's functions among them.
+    pub(super) mentioned: HashSet<String>,
     /// Parameters and block-local `let`s of the scene's own file that nobody uses.
     pub(super) warnings: Vec<Diagnostic>,
 }
@@ -28,7 +28,7 @@ pub(super) fn uses(modules: &[Module], globals: &[HashMap<&str, usize>], count: 
     let mut found = Uses {
         edges: Vec::with_capacity(count),
         used: vec![false; count],
-        library: HashSet::new(),
+        mentioned: HashSet::new(),
         warnings: Vec::new(),
     };
     let items = modules.iter().enumerate();
@@ -51,7 +51,7 @@ pub(super) fn uses(modules: &[Module], globals: &[HashMap<&str, usize>], count: 
         if module == 0 {
             found.warnings.append(&mut walker.warnings);
         }
-        found.library.extend(walker.unknown.iter().map(|name| (*name).to_owned()));
+        found.mentioned.extend(walker.mentioned.iter().map(|name| (*name).to_owned()));
         for &(target, _) in &walker.uses {
             found.used[target] = true;
         }
@@ -62,11 +62,11 @@ pub(super) fn uses(modules: &[Module], globals: &[HashMap<&str, usize>], count: 
     found
 }
 
-/// The names that the body of a function leaves open.
-pub(super) fn open_names(function: &Function) -> HashSet<&str> {
+/// The names that stand in the body of a function.
+pub(super) fn mentioned(function: &Function) -> HashSet<&str> {
     let mut walker = Walker::alone();
     walker.walk(function_steps(function));
-    walker.unknown
+    walker.mentioned
 }
 
 /// What a binding is called in a warning; bindings without a kind may stay unused.
@@ -101,7 +101,7 @@ struct Walker<'a, 'g> {
     bindings: Vec<Binding<'a>>,
     seen: HashSet<usize>,
     uses: Vec<Use>,
-    unknown: HashSet<&'a str>,
+    mentioned: HashSet<&'a str>,
     warnings: Vec<Diagnostic>,
 }
 
@@ -120,7 +120,7 @@ impl<'a, 'g> Walker<'a, 'g> {
             bindings: Vec::new(),
             seen: HashSet::new(),
             uses: Vec::new(),
-            unknown: HashSet::new(),
+            mentioned: HashSet::new(),
             warnings: Vec::new(),
         }
     }
@@ -202,12 +202,12 @@ impl<'a, 'g> Walker<'a, 'g> {
     }
 
     fn resolve(&mut self, name: &'a str, span: Span) {
+        // Also where something else has the name: a value does not hide a function of the library.
+        self.mentioned.insert(name);
         if let Some(&index) = self.scope.get(name).and_then(|indices| indices.last()) {
             self.bindings[index].used = true;
         } else if self.globals.get(self.module).is_some_and(|names| names.contains_key(name)) {
             self.resolve_in(ModuleId(self.module as u32), name, span);
-        } else {
-            self.unknown.insert(name);
         }
     }
 

@@ -6,6 +6,7 @@ mod conversions;
 mod functions;
 mod items;
 mod limits;
+mod loops;
 mod operators;
 mod support;
 mod values;

@@ -26,6 +26,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0112", "a vector has more than four components"),
     ("E0113", "an item begins with an unknown word"),
     ("E0115", "too many syntax errors; the rest is not shown"),
+    ("W0110", "an angle was probably meant in another unit"),
 ];
 
 /// Units of numbers, as messages list them.
@@ -149,6 +150,13 @@ pub(super) fn unknown_unit(at: Span, number: &str, unit: &str) -> Diagnostic {
     };
     let message = format!("{} is not a unit", quoted(unit));
     Diagnostic::error("E0106", message, at, format!("the units are {UNITS}")).with_help(help)
+}
+
+pub(super) fn suspicious_angle(at: Span, digits: &str, unit: &str, meant: &str) -> Diagnostic {
+    let message = format!("`{digits}{unit}` is an unusual angle");
+    let label = format!("looks like a number of {}", if meant == "deg" { "degrees" } else { "radians" });
+    Diagnostic::warning("W0110", message, at, label)
+        .with_help(format!("write `{digits}{meant}`, or another number if `{unit}` is meant"))
 }
 
 pub(super) fn number_too_large(at: Span) -> Diagnostic {

@@ -51,9 +51,17 @@ fn name_defined_twice() {
 
 #[test]
 fn built_in_name_defined_anew() {
-    assert_eq!(errors("let sin = 1"), ["E0203 `sin`: this name is taken"]);
+    assert_eq!(errors("fn sin(x: float) -> float { x }"), ["E0203 `sin`: this name is taken"]);
     assert_eq!(errors("fn vec3() -> int { 2 }"), ["E0203 `vec3`: this name is taken"]);
     assert_eq!(errors("param time: float = 1"), ["E0203 `time`: this name is taken"]);
+}
+
+#[test]
+fn a_value_does_not_hide_a_function_of_its_name() {
+    assert_eq!(errors("let sin = 1\nlet a = sin * sin(2.0)"), [""; 0]);
+    assert_eq!(errors("param max: float = 1\nlet a = max(max, 0.5)"), [""; 0]);
+    // A value that can be called does.
+    assert_eq!(errors("let a = max(1, 2)\nlet b = a(1)").len(), 1);
 }
 
 #[test]

@@ -298,7 +298,10 @@ impl<'a> Lowerer<'a> {
                 }
                 Some(place) => keys.push((place, value)),
                 None if at.is_none() => at = Some(value),
-                None => self.report(explain::not_a_key(value.span)),
+                None => {
+                    self.report(explain::not_a_key(value.span));
+                    break;
+                }
             }
         }
         let at = at.unwrap_or_else(|| {

@@ -28,7 +28,25 @@ pub(super) fn number(text: &str, span: Span) -> (ExprKind, Option<Diagnostic>) {
     if matches!(kind, ExprKind::Float(value) | ExprKind::Angle(value) if !value.is_finite()) {
         return (ExprKind::Float(0.0), Some(explain::number_too_large(span)));
     }
-    (kind, None)
+    let warning = (unit != "").then(|| suspicious_angle(digits, value, unit, span)).flatten();
+    (kind, warning)
+}
+
+/// A warning about an angle that was probably meant in another unit: `90rad`, `1.5708deg`, `180turn`.
+fn suspicious_angle(digits: &str, value: f64, unit: &str, span: Span) -> Option<Diagnostic> {
+    use std::f64::consts::PI;
+    // Multiples of an eighth turn in radians, as people type them, have at least three decimals.
+    let eighths = value / (PI / 4.0);
+    let is_radians = digits.split('.').nth(1).is_some_and(|decimals| decimals.len() >= 3)
+        && (0.5..16.5).contains(&eighths)
+        && (eighths - eighths.round()).abs() < 2e-3;
+    let is_degrees = value >= 45.0 && value % 15.0 == 0.0;
+    let meant = match unit {
+        "deg" if is_radians => "rad",
+        "rad" | "turn" if is_degrees => "deg",
+        _ => return None,
+    };
+    Some(explain::suspicious_angle(span, digits, unit, meant))
 }
 
 /// Where the unit begins; the `e` of an exponent is followed by a digit or a sign.

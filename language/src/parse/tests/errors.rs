@@ -162,7 +162,7 @@ fn items() {
     one("let a = keys(time, 1)", "E0102 expected `:` after the place of a key", "1");
     one("let a = keys()", "E0102 expected what runs along the keys", "()");
     one("let a = iterate 8 from z: (z = 1)", "E0102 expected `(`, found `z`", "z");
-    one("let a = iterate 8 from (z = 1)", "E0102 expected `while` or `:`, found the end of the item", "");
+    one("let a = iterate 8 from (z = 1)", "E0102 expected `while` or `:` after `)`", ")");
     one("camera { fov: 40deg, at: a up: b }", "E0105 two entries share a line without a comma", "up");
     one("let a = { b: 1 c: 2 }", "E0105 two entries share a line without a comma", "c");
 }

@@ -28,8 +28,7 @@ pub(super) fn number(text: &str, span: Span) -> (ExprKind, Option<Diagnostic>) {
     if matches!(kind, ExprKind::Float(value) | ExprKind::Angle(value) if !value.is_finite()) {
         return (ExprKind::Float(0.0), Some(explain::number_too_large(span)));
     }
-    let warning = (unit != "").then(|| suspicious_angle(digits, value, unit, span)).flatten();
-    (kind, warning)
+    (kind, suspicious_angle(digits, value, unit, span))
 }
 
 /// A warning about an angle that was probably meant in another unit: `90rad`, `1.5708deg`, `180turn`.

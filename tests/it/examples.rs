@@ -51,7 +51,8 @@ fn threads(path: &Path) -> Result<(), Failed> {
     Ok(())
 }
 
-fn has_content(image: &Image) -> bool {
+/// Whether a picture shows something, and numbers only.
+pub(crate) fn has_content(image: &Image) -> bool {
     let background = image.pixels[0];
     let finite = image.pixels.iter().all(|pixel| pixel.color.iter().all(|c| c.is_finite()));
     finite && image.pixels.iter().any(|pixel| compare::difference(pixel, &background) > 0.05)

@@ -1,11 +1,14 @@
-//! Every `vol` block of the documentation compiles without a message.
+//! Every `vol` block of the documentation compiles without a message, and the steps of the tutorial render.
 
 use crate::support::compile_with_messages;
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 
 /// Pages whose blocks are scenes.
-const PAGES: [&str; 2] = ["README.md", "docs/language.md"];
+const PAGES: [&str; 3] = ["README.md", "docs/language.md", TUTORIAL];
+
+/// The page whose blocks are whole scenes that build on each other.
+const TUTORIAL: &str = "docs/tutorial.md";
 
 /// The trials of this file: one per block.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -19,6 +22,10 @@ pub(crate) fn trials() -> Vec<Trial> {
             if count > 0 { Ok(()) } else { Err("no block of vol code was found".into()) }
         }));
         for (line, block) in blocks {
+            if page == TUTORIAL {
+                let block = block.clone();
+                trials.push(Trial::test(format!("spec::{page}:{line}_renders"), move || renders(&block)));
+            }
             trials.push(Trial::test(format!("spec::{page}:{line}"), move || compiles(&block)));
         }
     }
@@ -32,6 +39,11 @@ fn compiles(block: &str) -> Result<(), Failed> {
         if whole { block.to_owned() } else { format!("{block}\nobject ball {{ shape: sphere(1) }}\n") };
     let (program, messages) = compile_with_messages("block.vol", &scene);
     if program.is_some() && messages.is_empty() { Ok(()) } else { Err(messages.into()) }
+}
+
+fn renders(block: &str) -> Result<(), Failed> {
+    let image = crate::support::picture(block, [48, 30], 0.05)?;
+    if crate::examples::has_content(&image) { Ok(()) } else { Err("the picture is empty".into()) }
 }
 
 /// The fenced `vol` blocks of a page with the line on which each begins.

@@ -314,4 +314,19 @@ impl LocalField {
         (Self::Depth, "depth", Type::Float),
         (Self::Stretch, "stretch", Type::Float),
     ];
+
+    /// What it is, with unit and range.
+    #[must_use]
+    pub fn doc(self) -> &'static str {
+        match self {
+            Self::Local => "the region's own coordinates; of a tube those of the straight cylinder",
+            Self::World => "world position",
+            Self::T => "curve parameter, 0 to 1 along a tube or cylinder",
+            Self::L => "length from the start of a tube or cylinder, scene units",
+            Self::Angle => "angle around the axis",
+            Self::Radius => "0 at the axis or centre, 1 at the wall, of spheres, cylinders and tubes",
+            Self::Depth => "distance to the wall, scene units, positive inside",
+            Self::Stretch => "volume of a tube's map against the unit cylinder; 1 elsewhere",
+        }
+    }
 }

@@ -7,6 +7,7 @@ mod architecture;
 mod canary;
 mod cli;
 mod differential;
+mod docs;
 mod examples;
 #[cfg(feature = "gpu")]
 mod gpu_device;
@@ -26,6 +27,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(canary::trials());
     trials.extend(cli::trials());
     trials.extend(differential::trials());
+    trials.extend(docs::trials());
     trials.extend(examples::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

@@ -1,0 +1,217 @@
+//! Tables of the documentation, generated from the program's own tables.
+//!
+//! A page holds `<!-- table: NAME -->` and `<!-- end -->`; what stands between them is compared with
+//! what the program says, and written anew with `VOL_UPDATE_DOCS=1 cargo test --test it -- docs`.
+
+use libtest_mimic::{Failed, Trial};
+use std::path::PathBuf;
+use vol_compiler::library::library;
+use vol_language::blocks::{BLOCK_KINDS, Key};
+use vol_language::hir::LocalField;
+use vol_language::library::{DefaultValue, Parameter, Signature};
+use vol_language::settings::{ChoiceKind, SettingsKind};
+use vol_language::standard;
+use vol_language::ty::Type;
+
+const LANGUAGE: &str = "docs/language.md";
+
+/// The trials of this file.
+pub(crate) fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("docs::tables_are_current", tables_are_current),
+        Trial::test("docs::every_function_is_in_a_table", every_function_is_in_a_table),
+    ]
+}
+
+fn page() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(LANGUAGE)
+}
+
+fn tables_are_current() -> Result<(), Failed> {
+    let text = std::fs::read_to_string(page())?;
+    let current = with_tables(&text)?;
+    if std::env::var_os("VOL_UPDATE_DOCS").is_some() {
+        std::fs::write(page(), &current)?;
+        return Ok(());
+    }
+    let differs = text.lines().zip(current.lines()).position(|(old, new)| old != new);
+    match differs {
+        None if text == current => Ok(()),
+        at => Err(format!(
+            "{LANGUAGE} differs from the program at line {}: run VOL_UPDATE_DOCS=1 cargo test --test it -- docs",
+            at.map_or(0, |at| at + 1)
+        )
+        .into()),
+    }
+}
+
+fn every_function_is_in_a_table() -> Result<(), Failed> {
+    let text = std::fs::read_to_string(page())?;
+    let all = standard::extended(&library());
+    let missing: Vec<&str> = all
+        .signatures
+        .iter()
+        .filter(|signature| !text.contains(&format!("| `{}(", signature.name)))
+        .map(|signature| signature.name)
+        .collect();
+    if missing.is_empty() { Ok(()) } else { Err(format!("not in a table: {}", missing.join(", ")).into()) }
+}
+
+/// The page with all its tables written anew.
+fn with_tables(text: &str) -> Result<String, Failed> {
+    let mut out = String::new();
+    let mut skipping = false;
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("<!-- table: ").and_then(|rest| rest.strip_suffix(" -->")) {
+            out += &format!("{line}\n{}", table(name).ok_or_else(|| format!("there is no table `{name}`"))?);
+            skipping = true;
+        } else if line == "<!-- end -->" {
+            skipping = false;
+        }
+        if !skipping {
+            out += line;
+            out.push('\n');
+        }
+    }
+    Ok(out)
+}
+
+fn table(name: &str) -> Option<String> {
+    if let Some(kind) = BLOCK_KINDS.into_iter().find(|kind| kind.keyword() == name) {
+        return Some(keys(&format!("key of `{name}`"), &kind.keys()));
+    }
+    Some(match name {
+        "ease" => words(&[ChoiceKind::Ease]),
+        "lighting" => words(&[ChoiceKind::Lighting]),
+        "words" => words(&[
+            ChoiceKind::HoleFilling,
+            ChoiceKind::Layer,
+            ChoiceKind::Blend,
+            ChoiceKind::LightMap,
+            ChoiceKind::Stroke,
+            ChoiceKind::Brush,
+        ]),
+        "settings" => [SettingsKind::Holes, SettingsKind::Heterogeneity]
+            .map(|kind| keys(&format!("key of {}", kind.name()), &kind.keys()))
+            .join("\n"),
+        "local" => local(),
+        _ => {
+            let library = standard::extended(&library());
+            let own = library.signatures.len() - standard::signatures().len();
+            let members = library.signatures.iter().enumerate();
+            let members: Vec<&Signature> = members
+                .filter(|(i, s)| group(s, *i >= own) == name)
+                .map(|(_, signature)| signature)
+                .collect();
+            if members.is_empty() {
+                return None;
+            }
+            functions(&members)
+        }
+    })
+}
+
+/// The table that a function stands in.
+fn group(signature: &Signature, is_standard: bool) -> &'static str {
+    let params = &signature.params;
+    let is_shape = |index: usize| params.get(index).is_some_and(|param| param.ty == Type::Shape);
+    let is_place = params.first().is_some_and(|param| param.name == "p");
+    match signature.result {
+        _ if is_standard => "standard",
+        Type::Shape if is_shape(0) && (is_shape(1) || params[0].rest) => "operators",
+        Type::Shape if is_shape(0) => "transforms",
+        Type::Shape => "primitives",
+        Type::Curve => "curves",
+        Type::Material => "materials",
+        Type::Phase => "phases",
+        _ if is_place || ["hash", "random"].contains(&signature.name) => "noise",
+        _ => "numbers",
+    }
+}
+
+/// One row a function; forms that differ in types only share one.
+fn functions(members: &[&Signature]) -> String {
+    let mut out = "| function | gives | meaning |\n|---|---|---|\n".to_owned();
+    let mut shown: Vec<(&str, &str)> = Vec::new();
+    for signature in members {
+        let key = (signature.name, signature.doc);
+        if shown.contains(&key) {
+            continue;
+        }
+        shown.push(key);
+        let mut results: Vec<String> = Vec::new();
+        for form in members.iter().filter(|form| (form.name, form.doc) == key) {
+            let result = form.result.to_string();
+            if !results.contains(&result) {
+                results.push(result);
+            }
+        }
+        let params: Vec<String> =
+            signature.params.iter().map(|param| parameter(param, results.len() > 1)).collect();
+        let results = results.join(" ");
+        out += &format!(
+            "| `{}({})` | `{results}` | {} |\n",
+            signature.name,
+            params.join(", "),
+            cell(signature.doc)
+        );
+    }
+    out
+}
+
+/// `octaves: int`, `seed: int = 0`; without the type where a function takes several.
+fn parameter(param: &Parameter, is_general: bool) -> String {
+    let mut text = param.name.to_owned();
+    if !is_general {
+        text += &format!(": {}", param.ty);
+    }
+    if param.rest {
+        text += ", …";
+    }
+    match param.default {
+        DefaultValue::Required => {}
+        DefaultValue::Number(number) => text += &format!(" = {number}"),
+        DefaultValue::Bool(truth) => text += &format!(" = {truth}"),
+        DefaultValue::Word(word) => text += &format!(" = {word}"),
+    }
+    text
+}
+
+fn keys(title: &str, keys: &[Key]) -> String {
+    let mut out = format!("| {title} | type | meaning |\n|---|---|---|\n");
+    for key in keys {
+        let required = if key.required { "; needed" } else { "" };
+        out += &format!("| `{}` | `{}` | {}{required} |\n", key.name, key.ty, cell(key.doc));
+    }
+    out
+}
+
+fn words(kinds: &[ChoiceKind]) -> String {
+    let mut out = "| choice | word | meaning |\n|---|---|---|\n".to_owned();
+    for kind in kinds {
+        for word in kind.words() {
+            let params: Vec<String> =
+                word.params.iter().map(|key| format!("{}: {}", key.name, key.ty)).collect();
+            let form = if params.is_empty() {
+                word.name.to_owned()
+            } else {
+                format!("{}({})", word.name, params.join(", "))
+            };
+            out += &format!("| {} | `{form}` | {} |\n", kind.name(), cell(word.doc));
+        }
+    }
+    out
+}
+
+fn local() -> String {
+    let mut out = "| field | type | meaning |\n|---|---|---|\n".to_owned();
+    for (field, name, ty) in LocalField::ALL {
+        out += &format!("| `q.{name}` | `{ty}` | {} |\n", cell(field.doc()));
+    }
+    out
+}
+
+/// Text that does not end its cell.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}

@@ -2,9 +2,11 @@
 //!
 //! * [`pictures`]: what `vol render` writes
 //! * [`answers`]: what `vol check`, `compile`, `query` and `diff` say
+//! * [`files`]: scenes of several files, params and chosen blocks
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
 mod answers;
+mod files;
 mod mistakes;
 mod pictures;
 
@@ -16,7 +18,10 @@ use tempfile::TempDir;
 
 /// The trials of this folder.
 pub(crate) fn trials() -> Vec<Trial> {
-    [pictures::trials(), answers::trials(), mistakes::trials()].into_iter().flatten().collect()
+    [pictures::trials(), answers::trials(), files::trials(), mistakes::trials()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// A trial named `cli::<name>`.

@@ -69,3 +69,60 @@ fn mixed(graph: &mut Graph, a: ValueId, b: ValueId, share: ValueId) -> ValueId {
     let (a, b) = (graph.mul(a, rest), graph.mul(b, share));
     graph.add(a, b)
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::reference;
+    use vol_language::source::SourceFile;
+
+    /// The value of `keys(p.x, …)` at a place.
+    fn value(keys: &str, x: f64) -> Vec<f64> {
+        let text = format!(
+            "fn f(p: vec3) -> vec3 {{ (1, 0, 0) * keys(p.x, {keys}) }}\nobject b {{ shape: sphere(1) }}"
+        );
+        let (scene, found) =
+            vol_language::analyse(&SourceFile::new("keys.vol", text), &crate::library::library());
+        assert_eq!(found, []);
+        let (program, found) = crate::lower::compile(&scene.expect("no errors"));
+        assert_eq!(found, []);
+        let program = program.expect("no errors");
+        let field = program.fields.iter().find(|field| field.name == "f").expect("a field");
+        let frame = program.frame(&[], 0.0, 0.0, [8, 8]).expect("a frame");
+        reference::evaluate(program.module.function(field.function), &[x, 0.0, 0.0], &frame.uniforms, &[])
+    }
+
+    #[track_caller]
+    fn check(keys: &str, expected: &[(f64, f64)]) {
+        for &(x, wanted) in expected {
+            let found = value(keys, x)[0];
+            assert!((found - wanted).abs() < 1e-12, "keys({keys}) at {x}: {found}, expected {wanted}");
+        }
+    }
+
+    #[test]
+    fn values_at_and_between_keys() {
+        let ends = [(-9.0, 1.0), (0.0, 1.0), (2.0, 5.0), (3.0, 2.0), (99.0, 2.0)];
+        for ease in ["", ", ease: linear", ", ease: smooth", ", ease: hold", ", ease: u => u * u"] {
+            check(&format!("0: 1, 2: 5, 3: 2{ease}"), &ends);
+        }
+        check("0: 1, 2: 5, 3: 2", &[(1.0, 3.0), (0.5, 2.0), (2.5, 3.5)]);
+        check("0: 1, 2: 5, 3: 2, ease: smooth", &[(1.0, 3.0), (0.5, 1.0 + 4.0 * 0.15625)]);
+        check("0: 1, 2: 5, 3: 2, ease: hold", &[(1.999, 1.0), (2.999, 5.0)]);
+        check("0: 1, 2: 5, 3: 2, ease: u => u * u", &[(1.0, 2.0)]);
+    }
+
+    #[test]
+    fn one_key_is_a_constant() {
+        check("7: 3", &[(-1.0, 3.0), (7.0, 3.0), (8.0, 3.0)]);
+    }
+
+    #[test]
+    fn negative_and_close_places() {
+        check("-1: 0, -0.999: 8", &[(-1.0, 0.0), (-0.9995, 4.0), (0.0, 8.0)]);
+    }
+
+    #[test]
+    fn far_values_do_not_disturb_near_ones() {
+        check("0: 1, 1: 1e30, 2: 1", &[(0.0, 1.0), (2.0, 1.0), (3.0, 1.0)]);
+    }
+}

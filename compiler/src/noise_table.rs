@@ -1,10 +1,11 @@
-//! The integers behind gradient noise: one published table and one lattice hash.
+//! The integers behind the noises: one published table, one lattice hash, and the exact numbers made of it.
 //!
-//! Integers are exact on every device, so the reference evaluator and the CPU kernel share
-//! these two definitions; `wgsl/noise.wgsl` spells the same integers out again.
+//! Integers, and fractions with few bits, are exact on every device, so the reference evaluator and the
+//! CPU kernels share these definitions; `wgsl/noise.wgsl` spells the same ones out again.
 //!
-//! In: a lattice cell `(x, y, z)` and a seed. Out: which of the 16 gradient codes it carries,
-//! for example `gradient_code(3, 42, 7, 0)` is 2.
+//! In: a lattice cell and a seed. Out: which of the 16 gradient codes it carries (improved Perlin noise),
+//! for example `gradient_code(3, 42, 7, 0)` is 2; or a word of 32 random bits (the other noises), and
+//! from it a number of 0..1 or a point of the unit cube.
 
 /// Ken Perlin's published permutation of 0..=255.
 ///
@@ -63,14 +64,48 @@ pub fn table_cell(x: i32, y: i32, z: i32) -> u32 {
 /// * test: `hash_codes_are_even` (frequencies, neighbours, seeds)
 #[inline(always)]
 pub fn hash_cell(x: i32, y: i32, z: i32, seed: u32) -> u32 {
-    // Spread the four numbers and join them.
+    mixed(spread(x, y, z, seed)) >> 28
+}
+
+/// 32 random bits of a cell of four-dimensional space, the same hash with its last xorshift.
+///
+/// * `w`: 0 where there are but three coordinates; unlike [`hash_cell`], the cell 0 with seed 0 is as
+///   random as any other
+/// * test: `words_are_even`
+#[inline(always)]
+pub fn hash_word(x: i32, y: i32, z: i32, w: i32, seed: u32) -> u32 {
+    let fourth = (w as u32).wrapping_mul(0xc2b2_ae35) ^ 0x27d4_eb2f;
+    let word = mixed(spread(x, y, z, seed) ^ fourth);
+    word ^ (word >> 16)
+}
+
+/// Spread three coordinates and a seed and join them.
+#[inline(always)]
+fn spread(x: i32, y: i32, z: i32, seed: u32) -> u32 {
     let spread_xy = (x as u32).wrapping_mul(0x8da6_b343) ^ (y as u32).wrapping_mul(0xd816_3841);
     let spread_zs = (z as u32).wrapping_mul(0xcb1a_b31f) ^ seed.wrapping_mul(0x9e37_79b1);
-    let joined = spread_xy ^ spread_zs;
-    // Two multiply-xorshift rounds.
+    spread_xy ^ spread_zs
+}
+
+/// Two multiply-xorshift rounds.
+#[inline(always)]
+fn mixed(joined: u32) -> u32 {
     let first = (joined ^ (joined >> 16)).wrapping_mul(0x7feb_352d);
-    let second = (first ^ (first >> 15)).wrapping_mul(0x846c_a68b);
-    second >> 28
+    (first ^ (first >> 15)).wrapping_mul(0x846c_a68b)
+}
+
+/// The number `k / 2^24` of the top 24 bits of a word: exact, 0 to below 1.
+#[inline(always)]
+pub fn unit_number(word: u32) -> f32 {
+    // The cast goes through i32, which vector instructions convert.
+    (word >> 8) as i32 as f32 * (1.0 / 16_777_216.0)
+}
+
+/// A point of the unit cube from ten bits of a word each: `(k + 1/2) / 1024`, exact.
+#[inline(always)]
+pub fn unit_point(word: u32) -> [f32; 3] {
+    let coordinate = |bits: u32| ((bits & 1023) as i32 as f32 + 0.5) * (1.0 / 1024.0);
+    [coordinate(word), coordinate(word >> 10), coordinate(word >> 20)]
 }
 
 #[cfg(test)]
@@ -126,5 +161,42 @@ mod tests {
             let worst = worst_deviation(&pairs);
             assert!(worst < 5.0, "offset {dx} {dy} {dz} seed +{ds}: {worst} standard deviations");
         }
+    }
+
+    /// Pairs of four bits of two words, over a cube of cells.
+    fn pairs_of(bits: u32, other: impl Fn(i32, i32, i32) -> u32) -> f64 {
+        let mut pairs = [0u32; 256];
+        for i in 0..64 * 64 * 64 {
+            let (x, y, z) = ((i & 63) - 32, ((i >> 6) & 63) - 32, (i >> 12) - 32);
+            let (a, b) = (hash_word(x, y, z, 0, 0), other(x, y, z));
+            pairs[(((a >> bits) & 15) * 16 + ((b >> bits) & 15)) as usize] += 1;
+        }
+        worst_deviation(&pairs)
+    }
+
+    /// Of twenty thousand even counts one in forty million is as far off as 5.5 standard deviations.
+    #[test]
+    fn words_are_even() {
+        for bits in [0, 6, 10, 16, 20, 26, 28] {
+            for [dx, dy, dz, dw] in [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1], [1, -1, 2, -1]] {
+                for seed in [0, 1] {
+                    let worst = pairs_of(bits, |x, y, z| hash_word(x + dx, y + dy, z + dz, dw, seed));
+                    assert!(worst < 5.5, "bit {bits} offset {dx} {dy} {dz} {dw} seed {seed}: {worst}");
+                }
+            }
+            // Within one word.
+            let worst = pairs_of(bits, |x, y, z| hash_word(x, y, z, 0, 0).rotate_left(10));
+            assert!(worst < 5.5, "bit {bits}: {worst}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_words() {
+        assert_eq!([unit_number(0), unit_number(u32::MAX)], [0.0, 1.0 - 2f32.powi(-24)]);
+        assert_eq!(unit_point(0), [0.5 / 1024.0; 3]);
+        assert_eq!(unit_point(u32::MAX), [1023.5 / 1024.0; 3]);
+        assert_eq!(unit_point(0x0000_0400), [0.5 / 1024.0, 1.5 / 1024.0, 0.5 / 1024.0]);
+        let cells = [-1, 0, 1].map(|i| hash_word(i, 0, 0, 0, 0));
+        assert!(cells.iter().all(|&word| unit_number(word) > 0.01), "{cells:?}");
     }
 }

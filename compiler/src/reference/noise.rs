@@ -1,10 +1,21 @@
-//! Gradient noise in f64, slow and obvious: what the f32 kernels are tested against.
+//! Noises in f64, slow and obvious: what the f32 kernels are tested against.
 //!
 //! In: a point in lattice units and a seed. Out: improved Perlin noise as its author wrote it down
 //! (a weighted sum over the eight corners of the cell), its gradient by the product rule, and sums
-//! of octaves with true powers. Shares only the integers of [`crate::noise_table`] with the kernels.
+//! of octaves with true powers; the other noises in rooms of their own. Shares only the integers of
+//! [`crate::noise_table`], and the exact fractions made of them, with the kernels.
 
-use crate::noise_table::gradient_code;
+mod perlin4;
+mod simplex;
+mod value;
+mod worley;
+
+pub use perlin4::{perlin4, perlin4_gradient};
+pub use simplex::{simplex, simplex_gradient};
+pub use value::{value, value_gradient};
+pub use worley::{Nearest, nearest, worley, worley_gradient};
+
+use crate::noise_table::{gradient_code, hash_word, unit_number};
 
 /// Coordinates are held within ± this, as in the kernels.
 const FIELD: f64 = 4_194_303.0;
@@ -100,6 +111,14 @@ pub fn fbm_gradient(p: [f64; 3], octaves: u32, lacunarity: f64, gain: f64, seed:
     sum
 }
 
+/// A random number of the cell that a point lies in, 0 to below 1, a multiple of 2^-24.
+///
+/// * `p`: coordinates held within ±4194303, of which the whole parts count
+pub fn hash(p: [f64; 4], seed: u32) -> f64 {
+    let [x, y, z, w] = p.map(|x| x.clamp(-FIELD, FIELD).floor() as i32);
+    f64::from(unit_number(hash_word(x, y, z, w, seed)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,6 +146,37 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Compares `[value, slopes…]` with central differences of the value at 2000 points.
+    pub(super) fn assert_slopes<const N: usize>(noise: impl Fn([f64; N], u32) -> Vec<f64>, within: f64) {
+        let step = 1e-5;
+        for i in 0..2000u32 {
+            let p: [f64; N] = std::array::from_fn(|k| {
+                (f64::from(i) * [0.37, 0.71, 0.13, 0.29][k]) % 60.0 - 30.0 + 1e-3 * (k + 1) as f64
+            });
+            for seed in [0, 3] {
+                let exact = noise(p, seed);
+                for axis in 0..N {
+                    let (mut low, mut high) = (p, p);
+                    low[axis] -= step;
+                    high[axis] += step;
+                    let slope = (noise(high, seed)[0] - noise(low, seed)[0]) / (2.0 * step);
+                    assert!((slope - exact[axis + 1]).abs() < within, "{p:?} axis {axis}: {slope} {exact:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn hashes_of_cells() {
+        let at = |x: f64| hash([x, 0.0, 0.0, 0.0], 0);
+        assert_eq!(at(3.0), at(3.999));
+        assert_eq!([at(1e9), at(-1e9)], [at(FIELD), at(-FIELD)]);
+        assert!(at(3.0) != at(4.0) && at(-0.5) != at(0.0));
+        assert!(hash([3.0; 4], 0) != hash([3.0; 4], 1) && hash([3.0, 0.0, 0.0, 1.0], 0) != at(3.0));
+        let mean = (0..1000).map(|i| at(f64::from(i))).sum::<f64>() / 1000.0;
+        assert!((mean - 0.5).abs() < 0.03, "{mean}");
     }
 
     #[test]

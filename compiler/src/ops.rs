@@ -93,6 +93,24 @@ pub enum Op {
     Fbm,
     /// The sum and its three partial derivatives.
     FbmGradient,
+    /// Improved Perlin noise of (x, y, z, w); data is the seed.
+    Perlin4,
+    /// Perlin noise of four coordinates and its four partial derivatives.
+    Perlin4Gradient,
+    /// Value noise of (x, y, z); data is the seed.
+    Value,
+    /// Value noise and its three partial derivatives.
+    ValueGradient,
+    /// Simplex noise of (x, y, z); data is the seed.
+    Simplex,
+    /// Simplex noise and its three partial derivatives.
+    SimplexGradient,
+    /// Distance from (x, y, z) to the nearest of points strewn one to a cell, at most 1; data is the seed.
+    Worley,
+    /// The distance and its three partial derivatives.
+    WorleyGradient,
+    /// Random number of the cell (floor x, floor y, floor z, floor w), 0 to below 1; data is the seed.
+    Hash,
     /// Closest point of a curve to (x, y, z); data is the curve. Results: t, arc length, length of
     /// the curve, x and y in the frame, distance, overshoot, stretch.
     Closest,
@@ -184,6 +202,15 @@ pub static TABLE: &[Operation] = &[
     noise::PERLIN_GRADIENT,
     noise::FBM,
     noise::FBM_GRADIENT,
+    noise::PERLIN4,
+    noise::PERLIN4_GRADIENT,
+    noise::VALUE,
+    noise::VALUE_GRADIENT,
+    noise::SIMPLEX,
+    noise::SIMPLEX_GRADIENT,
+    noise::WORLEY,
+    noise::WORLEY_GRADIENT,
+    noise::HASH,
     curve::CLOSEST,
 ];
 

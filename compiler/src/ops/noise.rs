@@ -1,9 +1,17 @@
-//! Rows of gradient noise.
+//! Rows of the noises: improved Perlin noise and its sums here, the others in rooms of their own.
 //!
-//! Bounds that hold for every seed (`algorithms.md` §4.1): a value is at most [`LARGEST`], a gradient
-//! at most [`STEEPEST`] long, and the gradient changes by at most [`BENDING`] per unit. From these come
-//! both the intervals and how far errors of the position spread. Example: over a box of radius 0.01
-//! about a point where the noise is 0.3 and flat, it stays within 0.3 ± 0.0008.
+//! | room | noises |
+//! |---|---|
+//! | [`smooth`] | what all with continuous derivatives have in common: intervals and errors |
+//! | [`lattice`] | Perlin noise of four coordinates, value noise, simplex noise |
+//! | [`cells`] | distance to strewn points, random numbers of cells |
+//!
+//! Bounds hold for every seed (`algorithms.md` §4.1): those of the unkindest choice of gradients or
+//! numbers at the corners of a cell.
+
+mod cells;
+mod lattice;
+mod smooth;
 
 use super::error::{self, operand};
 use super::interval::Interval;
@@ -13,23 +21,28 @@ use crate::error_bound::Bounded;
 use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 use crate::reference::noise;
+use smooth::Smooth;
 
-/// Largest absolute value, rounded up.
-pub(super) const LARGEST: f64 = 1.036_353_811_3;
-/// Largest length of the gradient, and largest absolute partial derivative.
-pub(super) const STEEPEST: f64 = 3.75;
-/// Largest norm of the matrix of second derivatives, rounded up.
-pub(super) const BENDING: f64 = 14.466;
+pub(super) use cells::{HASH, WORLEY, WORLEY_GRADIENT};
+pub(super) use lattice::{PERLIN4, PERLIN4_GRADIENT, SIMPLEX, SIMPLEX_GRADIENT, VALUE, VALUE_GRADIENT};
+
+/// Improved Perlin noise. Own errors: 6.2e-7 and, of a partial derivative, 1.9e-6 were seen over 3e6
+/// points with every rounding drawn at random.
+const OCTAVE: Smooth = Smooth {
+    gradient: |p, seed| several(&noise::perlin_gradient([p[0], p[1], p[2]], seed)),
+    largest: 1.036_353_811_3,
+    steepest: 3.75,
+    bending: 14.466,
+    value_error: 1e-6,
+    partial_error: 3e-6,
+};
+
 /// The position is held within ± this.
 const FIELD: f64 = 4_194_303.0;
 /// Most octaves of a sum.
 const OCTAVES: f64 = 32.0;
 /// Factors of amplitude and frequency are held within ± this in f32, but not in the meaning.
 const PRODUCT: f64 = 1_099_511_627_776.0;
-/// Own error of a value; 6.2e-7 was seen over 3e6 points with every rounding drawn at random.
-const VALUE_ERROR: f64 = 1e-6;
-/// Own error of a partial derivative, likewise (1.9e-6).
-const PARTIAL_ERROR: f64 = 3e-6;
 
 const POINT: &[Ty] = &[Ty::Number; 3];
 const SUM: &[Ty] = &[Ty::Number; 6];
@@ -45,11 +58,8 @@ pub(super) const PERLIN: Operation = Operation {
     results: NUMBER,
     has_data: true,
     meaning: |x, context| one(noise::perlin([x[0], x[1], x[2]], context.data)),
-    interval: |x, context| one_within(octave_bounds([x[0], x[1], x[2]], context.data)[0]),
-    error: |x, e, _, context| {
-        let p = [0, 1, 2].map(|i| operand(x, e, i));
-        one(octave(p, context.data)[0].error)
-    },
+    interval: |x, context| one_within(OCTAVE.bounds(x, context.data)[0]),
+    error: |x, e, _, context| one(OCTAVE.errors(x, e, context.data)[0]),
     derivative: |graph, seed, x, _, d| {
         let parts = graph.apply_all(Op::PerlinGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
@@ -66,11 +76,8 @@ pub(super) const PERLIN_GRADIENT: Operation = Operation {
     results: WITH_GRADIENT,
     has_data: true,
     meaning: |x, context| several(&noise::perlin_gradient([x[0], x[1], x[2]], context.data)),
-    interval: |x, context| several_within(&octave_bounds([x[0], x[1], x[2]], context.data)),
-    error: |x, e, _, context| {
-        let p = [0, 1, 2].map(|i| operand(x, e, i));
-        several(&octave(p, context.data).map(|part| part.error))
-    },
+    interval: |x, context| OCTAVE.bounds(x, context.data),
+    error: |x, e, _, context| OCTAVE.errors(x, e, context.data),
     derivative: none,
     wgsl: "vol_perlin_gradient(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: PARTS,
@@ -128,30 +135,6 @@ fn octave_count(octaves: f64) -> u32 {
     octaves.min(OCTAVES).floor() as u32
 }
 
-/// Bounds of one octave and its gradient over a box.
-///
-/// * method: Taylor about the middle, first and second order, and the bounds over all of space
-fn octave_bounds(p: [Interval; 3], seed: u32) -> [Interval; 4] {
-    let held = p.map(|x| Interval::new(x.lo.clamp(-FIELD, FIELD), x.hi.clamp(-FIELD, FIELD)));
-    let radii = held.map(Interval::radius);
-    let radius = radii.iter().map(|r| r * r).sum::<f64>().sqrt();
-    let value = Interval::new(-LARGEST, LARGEST);
-    let partial = Interval::new(-STEEPEST, STEEPEST);
-    // A box this wide has nothing to gain from its middle.
-    if radius > 2.0 * LARGEST / STEEPEST {
-        return [value, partial, partial, partial];
-    }
-    let middle = noise::perlin_gradient(held.map(Interval::middle), seed);
-    let sloped: f64 = (0..3).map(|i| middle[i + 1].abs() * radii[i]).sum();
-    let reach = (STEEPEST * radius).min(sloped + 0.5 * BENDING * radius * radius);
-    // The middle values are themselves f64 sums of eight terms.
-    let rounding = 1e-14;
-    std::array::from_fn(|i| match i {
-        0 => Interval::around(middle[0], reach + rounding).within(value),
-        _ => Interval::around(middle[i], BENDING * radius + rounding).within(partial),
-    })
-}
-
 /// Bounds of a sum of octaves and its gradient: of all numbers of octaves that are possible.
 fn sum_bounds(x: &[Interval], seed: u32) -> [Interval; 4] {
     let (least, most) = (octave_count(x[3].lo), octave_count(x[3].hi));
@@ -161,8 +144,8 @@ fn sum_bounds(x: &[Interval], seed: u32) -> [Interval; 4] {
     let mut sum = [Interval::point(0.0); 4];
     let mut found = sum;
     for count in 1..=most {
-        let octave = octave_bounds([x[0] * frequency, x[1] * frequency, x[2] * frequency], seed);
-        for (i, part) in octave.into_iter().enumerate() {
+        let octave = OCTAVE.bounds(&[x[0] * frequency, x[1] * frequency, x[2] * frequency], seed);
+        for (i, part) in octave.into_iter().take(4).enumerate() {
             let factor = if i == 0 { amplitude } else { amplitude * frequency };
             sum[i] = sum[i] + factor * part;
             found[i] = if count <= least { sum[i] } else { found[i].hull(sum[i]) };
@@ -171,21 +154,6 @@ fn sum_bounds(x: &[Interval], seed: u32) -> [Interval; 4] {
         frequency = frequency * lacunarity;
     }
     found
-}
-
-/// One octave and its gradient at a position with errors, as f32 would compute them.
-fn octave(p: [Bounded; 3], seed: u32) -> [Bounded; 4] {
-    let exact = noise::perlin_gradient(p.map(|x| x.value), seed);
-    let off = p.iter().map(|x| x.error * x.error).sum::<f64>().sqrt();
-    let bent = BENDING * off;
-    let sloped: f64 = (0..3).map(|i| exact[i + 1].abs() * p[i].error).sum();
-    let change = (STEEPEST * off).min(sloped + 0.5 * bent * off).min(2.0 * LARGEST);
-    std::array::from_fn(|i| {
-        let error = if i == 0 { change + VALUE_ERROR } else { bent.min(2.0 * STEEPEST) + PARTIAL_ERROR };
-        // A position without a bound may be no number at all.
-        let error = if off.is_finite() { error } else { f64::INFINITY };
-        Bounded { value: exact[i], error }
-    })
 }
 
 /// Errors of a sum of octaves and of its gradient: the kernel's loop with a bound on every step.
@@ -200,9 +168,9 @@ fn sum_errors(x: &[f64], e: &[f64], seed: u32) -> Results<f64> {
     let mut sum = [Bounded { value: 0.0, error: 0.0 }; 4];
     for _ in 0..count {
         let q = [0, 1, 2].map(|i| error::mul(operand(x, e, i), frequency));
-        let n = octave(q, seed);
+        let n = OCTAVE.evaluate(&q, seed);
         let steepness = error::mul(amplitude, frequency);
-        for (i, part) in n.into_iter().enumerate() {
+        for (i, part) in n.into_iter().take(4).enumerate() {
             let factor = if i == 0 { amplitude } else { steepness };
             sum[i] = error::add(sum[i], error::mul(factor, part));
         }
@@ -225,11 +193,16 @@ mod tests {
     #[test]
     fn small_boxes_are_tight() {
         let around = |x: f64| Interval::new(x - 1e-4, x + 1e-4);
-        let [value, partial, ..] = octave_bounds([around(0.3), around(1.7), around(-2.4)], 1);
+        let [value, partial, ..] = OCTAVE.bounds(&[around(0.3), around(1.7), around(-2.4)], 1);
         assert!(value.width() < 1e-3 && partial.width() < 1e-2, "{value:?} {partial:?}");
-        let all = octave_bounds([Interval::EVERYTHING; 3], 1);
-        assert_eq!(all[0], Interval::new(-LARGEST, LARGEST));
-        assert_eq!(all[3], Interval::new(-STEEPEST, STEEPEST));
+        let all = OCTAVE.bounds(&[Interval::EVERYTHING; 3], 1);
+        assert_eq!(all[0], Interval::new(-OCTAVE.largest, OCTAVE.largest));
+        assert_eq!(all[3], Interval::new(-OCTAVE.steepest, OCTAVE.steepest));
+    }
+
+    #[test]
+    fn bounds_cannot_be_broken() {
+        smooth::tests::assert_bounds_hold(&OCTAVE, 3, [0.8, 0.8, 0.8]);
     }
 
     #[test]

@@ -187,7 +187,10 @@ fn identity(op: Op, x: &Operands<'_>) -> Simplified {
         Op::And | Op::Or | Op::Not | Op::Select => logic(op, x),
         Op::Min | Op::Max | Op::Floor | Op::Less | Op::LessEqual | Op::Equal => Simplified::Same,
         Op::Sqrt | Op::Sin | Op::Cos | Op::Exp2 | Op::Log2 | Op::Acos | Op::Atan2 => Simplified::Same,
-        Op::Perlin | Op::PerlinGradient | Op::Fbm | Op::FbmGradient | Op::Closest => Simplified::Same,
+        Op::Perlin | Op::PerlinGradient | Op::Fbm | Op::FbmGradient => Simplified::Same,
+        Op::Perlin4 | Op::Perlin4Gradient | Op::Value | Op::ValueGradient => Simplified::Same,
+        Op::Simplex | Op::SimplexGradient | Op::Worley | Op::WorleyGradient => Simplified::Same,
+        Op::Hash | Op::Closest => Simplified::Same,
     }
 }
 

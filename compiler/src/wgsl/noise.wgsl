@@ -1,4 +1,4 @@
-// Gradient noise in f32, the same text as `runtime-cpu/src/math/noise.rs`, where ranges, errors and
+// Noises in f32, the same text as `runtime-cpu/src/math/noise.rs`, where ranges, errors and
 // sources stand. Needs `fun.wgsl` and the storage buffer `vol_permutation: array<u32>` (256 words,
 // `noise_table::permutation_words`).
 
@@ -86,14 +86,47 @@ fn vol_table_cell(x: i32, y: i32, z: i32) -> u32 {
 
 // Gradient code of a cell from an integer hash.
 fn vol_hash_cell(x: i32, y: i32, z: i32, seed: u32) -> u32 {
-    // Spread the four numbers and join them.
+    return vol_mixed(vol_spread(x, y, z, seed)) >> 28u;
+}
+
+// 32 random bits of a cell of four-dimensional space.
+fn vol_hash_word(x: i32, y: i32, z: i32, w: i32, seed: u32) -> u32 {
+    let fourth = (bitcast<u32>(w) * 0xc2b2ae35u) ^ 0x27d4eb2fu;
+    let word = vol_mixed(vol_spread(x, y, z, seed) ^ fourth);
+    return word ^ (word >> 16u);
+}
+
+// Spread three coordinates and a seed and join them.
+fn vol_spread(x: i32, y: i32, z: i32, seed: u32) -> u32 {
     let spread_xy = (bitcast<u32>(x) * 0x8da6b343u) ^ (bitcast<u32>(y) * 0xd8163841u);
     let spread_zs = (bitcast<u32>(z) * 0xcb1ab31fu) ^ (seed * 0x9e3779b1u);
-    let joined = spread_xy ^ spread_zs;
-    // Two multiply-xorshift rounds.
+    return spread_xy ^ spread_zs;
+}
+
+// Two multiply-xorshift rounds.
+fn vol_mixed(joined: u32) -> u32 {
     let first = (joined ^ (joined >> 16u)) * 0x7feb352du;
-    let second = (first ^ (first >> 15u)) * 0x846ca68bu;
-    return second >> 28u;
+    return (first ^ (first >> 15u)) * 0x846ca68bu;
+}
+
+// The number `k / 2^24` of the top 24 bits of a word: exact, 0 to below 1.
+fn vol_unit_number(word: u32) -> f32 {
+    return f32(word >> 8u) * 0x1p-24f;
+}
+
+// A point of the unit cube from ten bits of a word each: `(k + 1/2) / 1024`, exact.
+fn vol_unit_point(word: u32) -> vec3f {
+    let bits = vec3u(word, word >> 10u, word >> 20u) & vec3u(1023u);
+    return (vec3f(bits) + 0.5) * 0x1p-10f;
+}
+
+// A random number of the cell that a point lies in.
+fn vol_hash(p: vec4f, seed: u32) -> f32 {
+    let x = i32(floor(vol_hold(p.x, -VOL_FIELD, VOL_FIELD)));
+    let y = i32(floor(vol_hold(p.y, -VOL_FIELD, VOL_FIELD)));
+    let z = i32(floor(vol_hold(p.z, -VOL_FIELD, VOL_FIELD)));
+    let w = i32(floor(vol_hold(p.w, -VOL_FIELD, VOL_FIELD)));
+    return vol_unit_number(vol_hash_word(x, y, z, w, seed));
 }
 
 // Gradient code of the corner (i, j, k) of a cell; seed 0 is the published permutation. Chosen by

@@ -8,7 +8,7 @@ mod curve;
 mod noise;
 
 use super::LANES;
-use crate::math::fun;
+use crate::math::{fun, noise as kernel};
 use vol_compiler::curve::CurveTable;
 use vol_compiler::ops::{MAX_RESULTS, Op};
 use vol_compiler::tape::MAX_OPERANDS;
@@ -58,6 +58,15 @@ pub(crate) fn apply(op: Op, data: u32, x: &Operands<'_>, out: &mut Out, curves: 
         Op::PerlinGradient => noise::perlin_gradient(x, out, data),
         Op::Fbm => noise::fbm(x, out, data),
         Op::FbmGradient => noise::fbm_gradient(x, out, data),
+        Op::Perlin4 => noise::each(x, out, |p| [kernel::perlin4(p, data)]),
+        Op::Perlin4Gradient => noise::each(x, out, |p| kernel::perlin4_gradient(p, data)),
+        Op::Value => noise::each(x, out, |p| [kernel::value(p, data)]),
+        Op::ValueGradient => noise::each(x, out, |p| kernel::value_gradient(p, data)),
+        Op::Simplex => noise::each(x, out, |p| [kernel::simplex(p, data)]),
+        Op::SimplexGradient => noise::each(x, out, |p| kernel::simplex_gradient(p, data)),
+        Op::Worley => noise::worley::<1>(x, out, data),
+        Op::WorleyGradient => noise::worley::<4>(x, out, data),
+        Op::Hash => noise::each(x, out, |p| [kernel::hash(p, data)]),
         Op::Closest => curve::closest(x, out, curves.get(data as usize).map_or(&[], |table| &table.pieces)),
     }
 }

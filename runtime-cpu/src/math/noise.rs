@@ -1,7 +1,7 @@
-//! Gradient noise in f32, the same text as `compiler/src/wgsl/noise.wgsl`.
+//! Noises in f32, the same text as `compiler/src/wgsl/noise.wgsl`; each room is the twin of a file there.
 //!
 //! In: a point in lattice units (one cell is one unit) and a seed. Out: improved Perlin noise, its
-//! exact gradient, and sums of octaves. Example: `perlin([3.14, 42.0, 7.0], 0)` is 0.136919…,
+//! exact gradient, and sums of octaves; the other noises are in rooms of their own. Example: `perlin([3.14, 42.0, 7.0], 0)` is 0.136919…,
 //! the value its author publishes.
 //!
 //! Everything is inlined by force: only then does a loop over points vectorise (5 ns instead of 43 a
@@ -11,7 +11,17 @@
 //! Bounds for every hash (`algorithms.md` §4.1): value at most 1.0363538113, gradient length at
 //! most 3.75. Source: K. Perlin, "Improving Noise", SIGGRAPH 2002.
 
-use vol_compiler::noise_table::{hash_cell, table_cell};
+mod perlin4;
+mod simplex;
+mod value;
+mod worley;
+
+pub use perlin4::{perlin4, perlin4_gradient};
+pub use simplex::{simplex, simplex_gradient};
+pub use value::{value, value_gradient};
+pub use worley::{Nearest, worley, worley_gradient};
+
+use vol_compiler::noise_table::{hash_cell, hash_word, table_cell, unit_number};
 
 use super::fun::{floor, hold, whole_to_int};
 
@@ -148,15 +158,15 @@ pub fn perlin(p: [f32; 3], seed: u32) -> f32 {
 /// A value with what its gradient is made of: blended corner gradients, and the slopes by which
 /// the blending weights enter.
 #[derive(Clone, Copy)]
-struct Blend {
+struct Blend<const N: usize> {
     value: f32,
-    gradient: [f32; 3],
-    slope: [f32; 3],
+    gradient: [f32; N],
+    slope: [f32; N],
 }
 
 /// Value and gradient at one corner.
 #[inline(always)]
-fn corner_blend<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) -> Blend {
+fn corner_blend<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) -> Blend<3> {
     let code = corner_code::<TABLE>(c, i, j, k, seed);
     let value = edge_value(code, c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32);
     Blend { value, gradient: edge_vector(code), slope: [0.0; 3] }
@@ -164,10 +174,10 @@ fn corner_blend<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) 
 
 /// Blend two neighbours along one axis and note the slope there.
 #[inline(always)]
-fn blend(axis: usize, t: f32, a: Blend, b: Blend) -> Blend {
-    let mix = |p: [f32; 3], q: [f32; 3]| [lerp(t, p[0], q[0]), lerp(t, p[1], q[1]), lerp(t, p[2], q[2])];
+fn blend<const N: usize>(axis: usize, t: f32, a: Blend<N>, b: Blend<N>) -> Blend<N> {
+    let mix = |p: [f32; N], q: [f32; N]| core::array::from_fn(|i| lerp(t, p[i], q[i]));
     let rise = b.value - a.value;
-    let mut slope = mix(a.slope, b.slope);
+    let mut slope: [f32; N] = mix(a.slope, b.slope);
     slope[axis] = rise;
     Blend { value: a.value + (t * rise), gradient: mix(a.gradient, b.gradient), slope }
 }
@@ -263,16 +273,27 @@ pub fn fbm_gradient(p: [f32; 3], octaves: f32, lacunarity: f32, gain: f32, seed:
     sum
 }
 
+/// A random number of the cell that a point lies in, 0 to below 1, a multiple of 2^-24.
+///
+/// * `p`: each coordinate is held within ±4194303; its whole part counts
+/// * error: none
+/// * source: [`hash_word`]
+#[inline(always)]
+pub fn hash(p: [f32; 4], seed: u32) -> f32 {
+    let [x, y, z, w] = p.map(|x| whole_to_int(floor(hold(x, -FIELD, FIELD))));
+    unit_number(hash_word(x, y, z, w, seed))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use vol_compiler::reference::noise as reference;
 
     /// Xorshift numbers in [0, 1).
-    struct Dice(u64);
+    pub(super) struct Dice(pub(super) u64);
 
     impl Dice {
-        fn roll(&mut self) -> f32 {
+        pub(super) fn roll(&mut self) -> f32 {
             self.0 ^= self.0 << 13;
             self.0 ^= self.0 >> 7;
             self.0 ^= self.0 << 17;
@@ -284,9 +305,9 @@ mod tests {
         }
     }
 
-    const SEEDS: [u32; 4] = [0, 1, 77, 0xffff_ffff];
+    pub(super) const SEEDS: [u32; 4] = [0, 1, 77, 0xffff_ffff];
 
-    fn cases(reach: f32) -> impl Iterator<Item = ([f32; 3], u32)> {
+    pub(super) fn cases(reach: f32) -> impl Iterator<Item = ([f32; 3], u32)> {
         let mut dice = Dice(88_172_645_463_325_252);
         (0..120_000usize).map(move |i| (dice.point(reach), SEEDS[i & 3]))
     }
@@ -372,6 +393,17 @@ mod tests {
                     assert!((f64::from(found[i]) - truth[i]).abs() <= steep, "{p:?} {found:?} {truth:?}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn hashes_are_those_of_f64() {
+        for (p, seed) in cases(50.0) {
+            let p = [p[0], p[1], p[2], p[0] - p[1]];
+            assert_eq!(f64::from(hash(p, seed)), reference::hash(p.map(f64::from), seed), "{p:?}");
+        }
+        for p in [[3e38, -3e38, 1e30, -1e30], [4_194_303.5, -4_194_304.0, 8e6, -0.0], [-1e-40, 1e-40, -0.5, 0.5]] {
+            assert_eq!(f64::from(hash(p, 7)), reference::hash(p.map(f64::from), 7), "{p:?}");
         }
     }
 

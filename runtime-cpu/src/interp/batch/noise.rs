@@ -4,7 +4,8 @@
 //! loops are turned around so that the lanes vectorise.
 
 use super::{LANES, Operands, Out};
-use crate::math::noise::{self, next_octave, octave_count};
+use crate::math::noise::{self, Nearest, next_octave, octave_count};
+use std::array;
 
 /// One coordinate, or one component of a gradient, of each lane.
 type Row<'a> = &'a [f32];
@@ -100,6 +101,47 @@ impl Octaves {
             *frequency = next_octave(*frequency, lacunarity);
         }
     }
+}
+
+/// A kernel of `IN` coordinates in each lane; one that is inlined, so that the loop vectorises.
+#[inline(always)]
+pub(super) fn each<const IN: usize, const OUT: usize>(
+    x: &Operands<'_>,
+    out: &mut Out,
+    kernel: impl Fn([f32; IN]) -> [f32; OUT],
+) -> usize {
+    let lanes = x[0].len().min(LANES);
+    let rows: [Row<'_>; IN] = array::from_fn(|i| &x[i][..lanes]);
+    let mut results = [[0.0; LANES]; OUT];
+    for lane in 0..lanes {
+        let found = kernel(rows.map(|row| row[lane]));
+        for (result, found) in results.iter_mut().zip(found) {
+            result[lane] = found;
+        }
+    }
+    for (out, result) in out.iter_mut().zip(results) {
+        out.0 = result;
+    }
+    OUT
+}
+
+/// The first `OUT` results of [`noise::worley_gradient`] in each lane: cells outside, lanes inside.
+pub(super) fn worley<const OUT: usize>(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
+    let mut found = [Nearest::default(); LANES];
+    for (found, ((&x, &y), &z)) in found.iter_mut().zip(x[0].iter().zip(x[1]).zip(x[2])) {
+        *found = Nearest::new([x, y, z]);
+    }
+    for step in Nearest::STEPS {
+        for found in &mut found {
+            *found = found.with(step, seed);
+        }
+    }
+    for (lane, found) in found.iter().enumerate() {
+        for (out, part) in out[..OUT].iter_mut().zip(found.gradient()) {
+            out.0[lane] = part;
+        }
+    }
+    OUT
 }
 
 /// [`noise::fbm`] in each lane.

@@ -19,6 +19,8 @@ use crate::noise_table::{gradient_code, hash_word, unit_number};
 
 /// Coordinates are held within ± this, as in the kernels.
 const FIELD: f64 = 4_194_303.0;
+/// Those of [`hash`] within ± this, the whole numbers of the language.
+const WHOLES: f64 = 16_777_216.0;
 
 /// The author's sixteen gradients: twelve edges of a cube, four of them again.
 const EDGES: [[f64; 3]; 16] = [
@@ -113,9 +115,9 @@ pub fn fbm_gradient(p: [f64; 3], octaves: u32, lacunarity: f64, gain: f64, seed:
 
 /// A random number of the cell that a point lies in, 0 to below 1, a multiple of 2^-24.
 ///
-/// * `p`: coordinates held within ±4194303, of which the whole parts count
+/// * `p`: coordinates held within ±2^24, of which the whole parts count
 pub fn hash(p: [f64; 4], seed: u32) -> f64 {
-    let [x, y, z, w] = p.map(|x| x.clamp(-FIELD, FIELD).floor() as i32);
+    let [x, y, z, w] = p.map(|x| x.clamp(-WHOLES, WHOLES).floor() as i32);
     f64::from(unit_number(hash_word(x, y, z, w, seed)))
 }
 
@@ -172,7 +174,7 @@ mod tests {
     fn hashes_of_cells() {
         let at = |x: f64| hash([x, 0.0, 0.0, 0.0], 0);
         assert_eq!(at(3.0), at(3.999));
-        assert_eq!([at(1e9), at(-1e9)], [at(FIELD), at(-FIELD)]);
+        assert_eq!([at(1e9), at(-1e9)], [at(WHOLES), at(-WHOLES)]);
         assert!(at(3.0) != at(4.0) && at(-0.5) != at(0.0));
         assert!(hash([3.0; 4], 0) != hash([3.0; 4], 1) && hash([3.0, 0.0, 0.0, 1.0], 0) != at(3.0));
         let mean = (0..1000).map(|i| at(f64::from(i))).sum::<f64>() / 1000.0;

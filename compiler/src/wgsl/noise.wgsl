@@ -4,6 +4,8 @@
 
 // Coordinates are held within +- this, where f32 has a fraction left and the cell is an exact i32.
 const VOL_FIELD: f32 = 4194303.0;
+// Coordinates of a hash are held within +- this.
+const VOL_WHOLES: f32 = 16777216.0;
 // Running products of an octave sum are held within +- this, so that no octave overflows.
 const VOL_PRODUCT: f32 = 1.0995116e12;
 // Most octaves a sum may have.
@@ -122,10 +124,10 @@ fn vol_unit_point(word: u32) -> vec3f {
 
 // A random number of the cell that a point lies in.
 fn vol_hash(p: vec4f, seed: u32) -> f32 {
-    let x = i32(floor(vol_hold(p.x, -VOL_FIELD, VOL_FIELD)));
-    let y = i32(floor(vol_hold(p.y, -VOL_FIELD, VOL_FIELD)));
-    let z = i32(floor(vol_hold(p.z, -VOL_FIELD, VOL_FIELD)));
-    let w = i32(floor(vol_hold(p.w, -VOL_FIELD, VOL_FIELD)));
+    let x = i32(floor(vol_hold(p.x, -VOL_WHOLES, VOL_WHOLES)));
+    let y = i32(floor(vol_hold(p.y, -VOL_WHOLES, VOL_WHOLES)));
+    let z = i32(floor(vol_hold(p.z, -VOL_WHOLES, VOL_WHOLES)));
+    let w = i32(floor(vol_hold(p.w, -VOL_WHOLES, VOL_WHOLES)));
     return vol_unit_number(vol_hash_word(x, y, z, w, seed));
 }
 

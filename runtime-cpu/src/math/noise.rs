@@ -27,6 +27,8 @@ use super::fun::{floor, hold, whole_to_int};
 
 /// Coordinates are held within ± this, where f32 has a fraction left and the cell is an exact i32.
 const FIELD: f32 = 4_194_303.0;
+/// Coordinates of [`hash`] are held within ± this, the whole numbers of the language.
+const WHOLES: f32 = 16_777_216.0;
 /// Running products of [`fbm`] are held within ± this, so that no octave overflows.
 const PRODUCT: f32 = 1.099_511_6e12;
 /// Most octaves a sum may have.
@@ -275,12 +277,12 @@ pub fn fbm_gradient(p: [f32; 3], octaves: f32, lacunarity: f32, gain: f32, seed:
 
 /// A random number of the cell that a point lies in, 0 to below 1, a multiple of 2^-24.
 ///
-/// * `p`: each coordinate is held within ±4194303; its whole part counts
+/// * `p`: each coordinate is held within ±2^24; its whole part counts
 /// * error: none
 /// * source: [`hash_word`]
 #[inline(always)]
 pub fn hash(p: [f32; 4], seed: u32) -> f32 {
-    let [x, y, z, w] = p.map(|x| whole_to_int(floor(hold(x, -FIELD, FIELD))));
+    let [x, y, z, w] = p.map(|x| floor(hold(x, -WHOLES, WHOLES)) as i32);
     unit_number(hash_word(x, y, z, w, seed))
 }
 
@@ -402,7 +404,9 @@ mod tests {
             let p = [p[0], p[1], p[2], p[0] - p[1]];
             assert_eq!(f64::from(hash(p, seed)), reference::hash(p.map(f64::from), seed), "{p:?}");
         }
-        for p in [[3e38, -3e38, 1e30, -1e30], [4_194_303.5, -4_194_304.0, 8e6, -0.0], [-1e-40, 1e-40, -0.5, 0.5]] {
+        for p in
+            [[3e38, -3e38, 1e30, -1e30], [4_194_303.5, -4_194_304.0, 8e6, -0.0], [-1e-40, 1e-40, -0.5, 0.5]]
+        {
             assert_eq!(f64::from(hash(p, 7)), reference::hash(p.map(f64::from), 7), "{p:?}");
         }
     }

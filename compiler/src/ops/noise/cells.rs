@@ -7,11 +7,15 @@
 use super::super::error::{UNIT, decision, operand};
 use super::super::interval::Interval;
 use super::super::math::{NUMBER, WHOLE};
-use super::super::{MAX_RESULTS, Op, Operation, Results, Ty, one, one_within, several, several_within, slope};
+use super::super::{
+    MAX_RESULTS, Op, Operation, Results, Ty, one, one_within, several, several_within, slope,
+};
 use super::{FIELD, PARTS, POINT, SPACE, WITH_GRADIENT, none};
 use crate::error_bound::Bounded;
 use crate::reference::noise::{self, Nearest};
 
+/// Coordinates of random numbers are held within ± this.
+const WHOLES: f64 = 16_777_216.0;
 /// Distances are held at this.
 const FARTHEST: f64 = 1.0;
 /// Own error of a distance: offsets are rounded once, and roots are off by 4.5 ulp.
@@ -60,7 +64,7 @@ pub(in super::super) const HASH: Operation = Operation {
     has_data: true,
     meaning: |x, context| one(noise::hash([x[0], x[1], x[2], x[3]], context.data)),
     interval: |x, context| {
-        let cell = [0, 1, 2, 3].map(|i| x[i].increasing_exact(|x| x.clamp(-FIELD, FIELD).floor()));
+        let cell = [0, 1, 2, 3].map(|i| x[i].increasing_exact(|x| x.clamp(-WHOLES, WHOLES).floor()));
         one_within(if cell.iter().all(|x| x.is_point()) {
             Interval::point(noise::hash(cell.map(|x| x.lo), context.data))
         } else {
@@ -144,7 +148,8 @@ mod tests {
         // Between two neighbours the nearest changes: walk there by bisection.
         let at = |t: f64| [0.5 + t, 0.5, 0.5];
         let first = noise::nearest(at(0.0), 0);
-        let point = |n: &Nearest, p: [f64; 3]| [0, 1, 2].map(|i| (p[i] - n.offset[i]) * 1024.0).map(f64::round);
+        let point =
+            |n: &Nearest, p: [f64; 3]| [0, 1, 2].map(|i| (p[i] - n.offset[i]) * 1024.0).map(f64::round);
         let (mut lo, mut hi) = (0.0, 3.0);
         for _ in 0..60 {
             let t = 0.5 * (lo + hi);
@@ -160,7 +165,10 @@ mod tests {
     #[test]
     fn whole_numbers_decide() {
         let bound = |lo: f64, hi: f64| {
-            (HASH.interval)(&[Interval::new(lo, hi), Interval::point(0.0), Interval::point(0.5), Interval::point(2.0)], Context::default())[0]
+            (HASH.interval)(
+                &[Interval::new(lo, hi), Interval::point(0.0), Interval::point(0.5), Interval::point(2.0)],
+                Context::default(),
+            )[0]
         };
         assert_eq!(bound(3.0, 3.9).width(), 0.0);
         assert_eq!(bound(3.9, 4.0), Interval::new(0.0, 1.0));

@@ -107,9 +107,8 @@ pub(super) mod tests {
         let mut most = [0.0_f64; 3];
         for round in 0..9000 {
             let (aim, seed) = (round % 3, round as u32 / 3 % 5);
-            let mut draw = |reach: f64| -> Vec<f64> {
-                (0..dimensions).map(|_| random.between(-reach, reach)).collect()
-            };
+            let mut draw =
+                |reach: f64| -> Vec<f64> { (0..dimensions).map(|_| random.between(-reach, reach)).collect() };
             let (mut p, mut way) = (draw(300.0), draw(1.0));
             let mut best = measures(noise, &p, &way, seed)[aim];
             let mut step = 0.3;

@@ -155,7 +155,8 @@ mod tests {
 
     #[test]
     fn odd_arguments_stay_finite() {
-        for p in [[3e38, -3e38, 1e30, -1e-40], [4_194_303.5, -4_194_304.0, 8e6, 0.5], [0.0, -0.0, 1.0, -1.0]] {
+        for p in [[3e38, -3e38, 1e30, -1e-40], [4_194_303.5, -4_194_304.0, 8e6, 0.5], [0.0, -0.0, 1.0, -1.0]]
+        {
             for seed in SEEDS {
                 assert!(perlin4_gradient(p, seed).iter().all(|x| x.is_finite()), "{p:?}");
             }

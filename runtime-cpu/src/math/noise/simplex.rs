@@ -36,11 +36,7 @@ fn simplex_of(p: [f32; 3]) -> Simplex {
     let skew = (rest + ((place[0] + place[1]) + place[2])) * THIRD;
     let cell = place.map(|x| floor(x + skew));
     let shift = (rest + ((cell[0] + cell[1]) + cell[2])) * SIXTH;
-    let offset = [
-        (place[0] - cell[0]) + shift,
-        (place[1] - cell[1]) + shift,
-        (place[2] - cell[2]) + shift,
-    ];
+    let offset = [(place[0] - cell[0]) + shift, (place[1] - cell[1]) + shift, (place[2] - cell[2]) + shift];
     // Walk along the largest coordinate first, along the smallest last.
     let [x, y, z] = offset;
     let (xy, yz, xz) = (x >= y, y >= z, x >= z);
@@ -63,7 +59,12 @@ fn simplex_corner(s: &Simplex, way: [i32; 3], unskew: f32, seed: u32) -> [f32; 4
     let edge = edge_vector(code);
     let value = edge_value(code, x, y, z);
     let pull = (8.0 * (squared * inside)) * value;
-    [weight * value, (weight * edge[0]) - (pull * x), (weight * edge[1]) - (pull * y), (weight * edge[2]) - (pull * z)]
+    [
+        weight * value,
+        (weight * edge[0]) - (pull * x),
+        (weight * edge[1]) - (pull * y),
+        (weight * edge[2]) - (pull * z),
+    ]
 }
 
 /// Simplex noise.
@@ -119,7 +120,8 @@ mod tests {
     fn nothing_jumps_between_simplices() {
         for i in -400..400 {
             let t = i as f32 * 0.1;
-            for p in [[t, t, 0.3], [0.7, t, t], [t, 0.1, t], [t, t, t], [t, 1.0 - t, 0.0], [t, 0.5 - t, 1.0]] {
+            for p in [[t, t, 0.3], [0.7, t, t], [t, 0.1, t], [t, t, t], [t, 1.0 - t, 0.0], [t, 0.5 - t, 1.0]]
+            {
                 let truth = reference::simplex_gradient(p.map(f64::from), 3);
                 let found = simplex_gradient(p, 3);
                 for k in 0..4 {

@@ -50,8 +50,7 @@ impl Nearest {
         let squared = (x * x + y * y) + z * z;
         let nearer = squared < self.squared;
         let choose = |new: f32, old: f32| if nearer { new } else { old };
-        let offset =
-            [choose(x, self.offset[0]), choose(y, self.offset[1]), choose(z, self.offset[2])];
+        let offset = [choose(x, self.offset[0]), choose(y, self.offset[1]), choose(z, self.offset[2])];
         Self { squared: choose(squared, self.squared), offset, ..self }
     }
 

@@ -11,6 +11,7 @@ mod docs;
 mod examples;
 #[cfg(feature = "gpu")]
 mod gpu_device;
+mod noises;
 mod physics;
 mod properties;
 mod shapes;
@@ -29,6 +30,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(differential::trials());
     trials.extend(docs::trials());
     trials.extend(examples::trials());
+    trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());
     trials.extend(shapes::trials());

@@ -144,6 +144,48 @@ fn noise_is_that_of_the_kernels() {
 }
 
 #[test]
+fn further_noises_are_those_of_the_kernels() {
+    use crate::math::noise;
+    type Kernel = fn([f32; 4], u32) -> Vec<f32>;
+    let kernels: [(&str, usize, Kernel); 5] = [
+        ("perlin4", 4, |p, seed| noise::perlin4_gradient(p, seed).to_vec()),
+        ("value", 3, |p, seed| noise::value_gradient([p[0], p[1], p[2]], seed).to_vec()),
+        ("simplex", 3, |p, seed| noise::simplex_gradient([p[0], p[1], p[2]], seed).to_vec()),
+        ("worley", 3, |p, seed| noise::worley_gradient([p[0], p[1], p[2]], seed).to_vec()),
+        ("hash", 4, |p, seed| vec![noise::hash(p, seed)]),
+    ];
+    assert_eq!(noise::worley([0.3, 0.4, 0.5], 1), noise::worley_gradient([0.3, 0.4, 0.5], 1)[0]);
+    for (name, operands, kernel) in kernels {
+        for seed in [0, 9] {
+            let place = ["%0", "%1", "%2", "%3"][..operands].join(" ");
+            let mut body =
+                String::from("fn f(4) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = input 3\n");
+            body += &format!("%4 = {name}[{seed}] {place}\n");
+            let slopes = if name == "hash" { 0 } else { operands };
+            let mut outputs = String::from("%4");
+            if slopes > 0 {
+                body += &format!("%5 = {name}_gradient[{seed}] {place}\n");
+                for part in 0..=slopes {
+                    body += &format!("%{} = extract %5 {part}\n", 6 + part);
+                    outputs += &format!(" %{}", 6 + part);
+                }
+            }
+            body += &format!("return {outputs}\n}}");
+            let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
+            let inputs = arguments(seed.into(), 150, 4);
+            let found = evaluate(&module, &inputs, 150);
+            for i in 0..150 {
+                let expected = kernel(array::from_fn(|k| inputs[k][i]), seed);
+                assert_eq!(found[0][i].to_bits(), expected[0].to_bits(), "{name}");
+                for part in 0..found.len() - 1 {
+                    assert_eq!(found[part + 1][i].to_bits(), expected[part].to_bits(), "{name} {part}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn values_are_within_the_error_bound_of_the_reference() {
     let (mut decided, mut all) = (0, 0);
     for seed in 0..300 {

@@ -6,10 +6,11 @@
 
 use crate::frame::{Aabb, Frame};
 use crate::ir::{Function, Inst};
+use crate::ops::Op;
 use crate::ops::interval::Interval;
-use crate::ops::{self, Op};
 use crate::program::{Medium, Program};
 use crate::reference;
+use std::ops::Range;
 use vol_language::diag::Diagnostic;
 
 /// Codes of this module with what each is about.
@@ -82,32 +83,33 @@ fn coarse(medium: &Medium, interior: &Function, bounds: Aabb, frame: &Frame) -> 
 /// Largest coordinate at which noise is evaluated for a point, finest octaves included.
 fn largest_coordinate(function: &Function, point: &[f64], frame: &Frame) -> Option<f64> {
     let mut probe = function.clone();
-    let mut scales: Vec<(usize, usize)> = Vec::new();
+    let mut calls: Vec<(Op, Range<usize>)> = Vec::new();
     probe.outputs.clear();
     for inst in &function.insts {
         let Inst::Apply { op, args, .. } = inst else { continue };
-        let is_sum = matches!(op, Op::Fbm | Op::FbmGradient);
-        if !is_sum && !matches!(op, Op::Perlin | Op::PerlinGradient) {
-            continue;
+        if NOISES.contains(op) {
+            let start = probe.outputs.len();
+            calls.push((*op, start..start + args.len()));
+            probe.outputs.extend_from_slice(args);
         }
-        debug_assert!(ops::operation(*op).args.len() >= 3, "noise has a position");
-        scales.push((probe.outputs.len(), args.len()));
-        probe.outputs.extend_from_slice(args);
     }
     let values = reference::evaluate(&probe, point, &frame.uniforms, &frame.curves);
-    let largest = scales.into_iter().map(|(start, count)| {
-        let operands = &values[start..start + count];
-        let place = operands[..3].iter().fold(0.0f64, |most, x| most.max(x.abs()));
-        // Octaves, lacunarity and gain follow the position of a sum.
-        let finest = match operands[3..] {
-            [octaves, lacunarity, _] => {
-                lacunarity.abs().max(1.0).powf((octaves.floor() - 1.0).clamp(0.0, 31.0))
-            }
-            _ => 1.0,
-        };
-        place * finest
-    });
-    largest.reduce(f64::max)
+    calls.into_iter().map(|(op, operands)| coordinate(op, &values[operands])).reduce(f64::max)
+}
+
+/// Operations that place their operands in cells.
+const NOISES: [Op; 6] = [Op::Perlin, Op::Perlin4, Op::Value, Op::Simplex, Op::Worley, Op::Fbm];
+
+/// Largest coordinate of one evaluation.
+fn coordinate(op: Op, operands: &[f64]) -> f64 {
+    let largest = |place: &[f64]| place.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    match (op, operands) {
+        (Op::Fbm, [x, y, z, octaves, lacunarity, _]) => {
+            let finest = lacunarity.abs().max(1.0).powf((octaves.floor() - 1.0).clamp(0.0, 31.0));
+            largest(&[*x, *y, *z]) * finest
+        }
+        (_, place) => largest(place),
+    }
 }
 
 fn cell_of(bounds: Aabb, cell: usize) -> [Interval; 3] {
@@ -152,6 +154,7 @@ mod tests {
     fn coarse_noise_is_named() {
         assert_eq!(codes("density: q => perlin(q.local + 200000)"), ["W0403"]);
         assert_eq!(codes("density: q => perlin(q.local + 1000)"), [""; 0]);
+        assert_eq!(codes("density: q => worley(vec3(0, 150000, 0) + q.local)"), ["W0403"]);
         assert_eq!(codes("density: q => fbm(q.local + 1000, 12)"), ["W0403"]);
         assert_eq!(codes("density: q => fbm(q.local + 1000, 6)"), [""; 0]);
     }

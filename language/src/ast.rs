@@ -1,6 +1,6 @@
 //! The untyped tree that the parser builds; spans everywhere.
 
-pub(crate) mod shift;
+pub(crate) mod spans;
 
 use crate::source::Span;
 

@@ -14,6 +14,7 @@ pub mod ast;
 pub mod blocks;
 pub mod check;
 pub mod diag;
+pub mod fmt;
 pub mod hir;
 pub mod library;
 pub mod module;

@@ -148,7 +148,7 @@ impl Walk<'_> {
         let (mut tree, mut found) = parse::parse(&file);
         let index = self.loaded.sources.add(file);
         let start = self.loaded.sources.start(index);
-        ast::shift::shift(&mut tree, start);
+        ast::spans::shift(&mut tree, start);
         for label in found.iter_mut().flat_map(|diagnostic| &mut diagnostic.labels) {
             label.span = label.span.shifted(start);
         }

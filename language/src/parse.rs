@@ -11,7 +11,7 @@
 pub mod explain;
 mod guard;
 mod lower;
-mod scan;
+pub(crate) mod scan;
 mod split;
 #[cfg(test)]
 mod tests;
@@ -60,6 +60,14 @@ pub fn parse(file: &SourceFile) -> (ast::File, Vec<Diagnostic>) {
         .diagnostics
         .sort_by_key(|diagnostic| diagnostic.labels.first().map_or(0, |label| label.span.start));
     (ast::File { items }, report.diagnostics)
+}
+
+/// The tokens of a text, with the marks of the guard; what is wrong with it is not said.
+pub(crate) fn tokens(text: &str) -> Vec<scan::Token> {
+    let mut report = Report::default();
+    let mut scan = scan::scan(text, &mut report);
+    guard::guard(text, &mut scan, &mut report);
+    scan.tokens
 }
 
 /// What all parts of the parser read.

@@ -20,7 +20,7 @@ static FILE: LazyLock<SourceFile> =
 static TREE: LazyLock<ast::File> = LazyLock::new(|| {
     let (mut tree, diagnostics) = parse::parse(&FILE);
     debug_assert!(diagnostics.is_empty(), "{diagnostics:?}");
-    ast::shift::shift(&mut tree, START);
+    ast::spans::shift(&mut tree, START);
     tree
 });
 

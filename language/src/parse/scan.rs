@@ -12,7 +12,7 @@ pub(super) const LANGUAGE_VERSION: &str = "1";
 
 /// What a token is; the text says the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Word,
     Number,
     Text,
@@ -27,14 +27,14 @@ pub(super) enum Kind {
 
 /// One token.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Token {
-    pub(super) start: u32,
-    pub(super) end: u32,
-    pub(super) kind: Kind,
+pub(crate) struct Token {
+    pub(crate) start: u32,
+    pub(crate) end: u32,
+    pub(crate) kind: Kind,
     /// Whether a line ends between the token before and this one.
     pub(super) starts_line: bool,
     /// Whether an item begins here; set by the guard.
-    pub(super) starts_item: bool,
+    pub(crate) starts_item: bool,
     /// Number of brackets around it, for a bracket those around the pair; set by the guard.
     pub(super) depth: u16,
 }
@@ -44,7 +44,7 @@ impl Token {
         Span { start: self.start, end: self.end }
     }
 
-    pub(super) fn text<'a>(&self, text: &'a str) -> &'a str {
+    pub(crate) fn text<'a>(&self, text: &'a str) -> &'a str {
         &text[self.start as usize..self.end as usize]
     }
 }

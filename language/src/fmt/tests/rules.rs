@@ -1,0 +1,1 @@
+//! Each rule on a text before and after.

@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Check(Check),
     /// List the params of a scene: type, default, range and label
     Params(Params),
+    /// Lay out scenes in the one usual way
+    Fmt(Fmt),
     /// Translate a scene to a shader
     Compile(Compile),
     /// Evaluate a field of a scene at given points
@@ -108,6 +110,20 @@ pub(crate) struct Params {
     /// `human` writes a line per param, `json` one list
     #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
     pub(crate) message_format: MessageFormat,
+}
+
+/// Arguments of `vol fmt`.
+#[derive(Debug, Args)]
+pub(crate) struct Fmt {
+    /// The scene scripts, rewritten in place; `-` is standard input, written to standard output
+    #[arg(required = true, value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Write nothing; list the scenes that would change, exit code 1 if there are any
+    #[arg(long)]
+    pub(crate) check: bool,
+    /// Write nothing; show what would change as a unified diff
+    #[arg(long)]
+    pub(crate) diff: bool,
 }
 
 /// Arguments of `vol compile`.

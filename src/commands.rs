@@ -7,6 +7,7 @@ mod check;
 mod compile;
 mod diff;
 mod params;
+mod fmt;
 mod progress;
 mod query;
 mod render;
@@ -39,6 +40,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Render(arguments) => render::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Params(arguments) => params::run(arguments),
+        Command::Fmt(arguments) => fmt::run(arguments),
         Command::Compile(arguments) => compile::run(arguments),
         Command::Query(arguments) => query::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),

@@ -54,18 +54,42 @@ enum ReadError {
     Content(SourceError),
 }
 
-/// Reads a scene file; of a file over the size limit no more than the limit is read.
+impl ReadError {
+    fn into_failure(self, path: &Path) -> Failure {
+        match self {
+            Self::File(reason) => Failure::io("cannot read", path, reason),
+            Self::Content(error) => not_a_scene(path, &error),
+        }
+    }
+}
+
+/// Reads a scene file.
 ///
 /// # Errors
 /// A usage failure if it cannot be read, a content failure if it is no scene text.
 pub fn read(path: &Path) -> Result<SourceFile, Failure> {
-    read_text(path).map_err(|error| match error {
-        ReadError::File(reason) => Failure::io("cannot read", path, reason),
-        ReadError::Content(error) => Failure::content(format!("cannot use `{}`: {error}", path.display())),
-    })
+    read_text(path).map_err(|error| error.into_failure(path))
+}
+
+/// Reads the bytes of a scene file; of a file over the size limit no more than the limit is read.
+///
+/// # Errors
+/// A usage failure if it cannot be read, a content failure if it is too large.
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    bytes_of(path).map_err(|error| error.into_failure(path))
+}
+
+/// A content failure for a file that is no scene text.
+#[must_use]
+pub fn not_a_scene(path: &Path, error: &SourceError) -> Failure {
+    Failure::content(format!("cannot use `{}`: {error}", path.display()))
 }
 
 fn read_text(path: &Path) -> Result<SourceFile, ReadError> {
+    SourceFile::from_bytes(path.display().to_string(), bytes_of(path)?).map_err(ReadError::Content)
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, ReadError> {
     let failed = |error: std::io::Error| ReadError::File(error.to_string());
     let file = File::open(path).map_err(failed)?;
     let metadata = file.metadata().map_err(failed)?;
@@ -74,15 +98,12 @@ fn read_text(path: &Path) -> Result<SourceFile, ReadError> {
     }
     let mut bytes = Vec::new();
     file.take(MAX_SOURCE_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(failed)?;
-    SourceFile::from_bytes(path.display().to_string(), bytes).map_err(|error| {
-        ReadError::Content(match error {
-            // What was read stops at the limit.
-            SourceError::TooLarge { bytes } => {
-                SourceError::TooLarge { bytes: bytes.max(metadata.len() as usize) }
-            }
-            SourceError::BinaryGrid | SourceError::NotUtf8 { .. } => error,
-        })
-    })
+    if bytes.len() > MAX_SOURCE_BYTES {
+        // What was read stops at the limit.
+        let bytes = bytes.len().max(metadata.len() as usize);
+        return Err(ReadError::Content(SourceError::TooLarge { bytes }));
+    }
+    Ok(bytes)
 }
 
 /// The folder of a scene; files that it imports lie below.

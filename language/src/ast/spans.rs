@@ -1,6 +1,8 @@
 //! One walk over all places of a tree.
 
-use super::{Argument, Entry, Expr, ExprKind, File, FunctionParam, ItemKind, Let, Name, TypeExpr, TypeExprKind};
+use super::{
+    Argument, Entry, Expr, ExprKind, File, FunctionParam, ItemKind, Let, Name, TypeExpr, TypeExprKind,
+};
 use crate::source::Span;
 
 /// What a span is the place of.

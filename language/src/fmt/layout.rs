@@ -81,7 +81,9 @@ impl<'t, 'a> Layout<'t, 'a> {
                 _ if i == 0 && is_word(0, "if") => return Cut::If,
                 _ if i == 0 => {
                     let colon = nodes.iter().position(|node| node.role == Role::Colon);
-                    return colon.filter(|at| at + 1 < nodes.len()).map_or(Cut::Brackets, |at| Cut::Head(at + 1));
+                    return colon
+                        .filter(|at| at + 1 < nodes.len())
+                        .map_or(Cut::Brackets, |at| Cut::Head(at + 1));
                 }
                 _ => {}
             }

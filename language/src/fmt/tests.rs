@@ -26,8 +26,16 @@ fn check(text: &str) -> bool {
     assert_eq!(printed(text), printed(&formatted), "{text}\n→\n{formatted}");
     assert_eq!(comments(text), comments(&formatted), "{text}\n→\n{formatted}");
     let again = format(&source(&formatted));
-    assert_eq!(again.as_deref(), Ok(formatted.as_str()), "{text}\n→\n{formatted}\n→\n{}", again.as_deref().unwrap_or("error"));
-    assert!(formatted.lines().all(|line| line.trim_end() == line) && !formatted.contains('\r'), "{formatted:?}");
+    assert_eq!(
+        again.as_deref(),
+        Ok(formatted.as_str()),
+        "{text}\n→\n{formatted}\n→\n{}",
+        again.as_deref().unwrap_or("error")
+    );
+    assert!(
+        formatted.lines().all(|line| line.trim_end() == line) && !formatted.contains('\r'),
+        "{formatted:?}"
+    );
     true
 }
 
@@ -53,7 +61,7 @@ fn comments(text: &str) -> Vec<&str> {
             let is_quote = byte == b'"' && !escaped;
             escaped = in_string && byte == b'\\' && !escaped;
             in_string ^= is_quote;
-            !in_string && line[i..].starts_with("//")
+            !in_string && line.as_bytes()[i..].starts_with(b"//")
         })
     };
     text.lines().filter_map(|line| comment(line).map(|at| line[at..].trim_end())).collect()

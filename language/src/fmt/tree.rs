@@ -228,6 +228,8 @@ fn symbol_role(symbol: &str) -> Role {
 fn has_space(before: Option<&Node>, role: Role, text: &str) -> bool {
     let Some(before) = before else { return false };
     match (before.role, role) {
+        // `0...5` would be hard to read.
+        (Role::Range, _) if text.starts_with('.') => true,
         (Role::Dot | Role::Range | Role::Prefix, _) | (_, Role::Dot | Role::Range | Role::Colon) => false,
         (Role::Operand, Role::Operand) => text != "(",
         _ => true,

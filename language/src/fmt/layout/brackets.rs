@@ -76,7 +76,8 @@ impl Layout<'_, '_> {
         for (i, part) in group.parts.iter().enumerate() {
             self.begin_line(part[0].piece, indent + INDENT, indent + INDENT, blank);
             let is_last = i + 1 == group.parts.len();
-            let comma = if group.kind != GroupKind::Block && (!is_last || group.ends_with_comma) { "," } else { "" };
+            let comma =
+                if group.kind != GroupKind::Block && (!is_last || group.ends_with_comma) { "," } else { "" };
             self.nodes(part, comma.len());
             self.lines.push(comma);
             blank = Blank::Keep;

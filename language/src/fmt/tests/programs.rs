@@ -31,8 +31,17 @@ impl Generator {
     }
 
     fn name(&mut self) {
-        let name =
-            self.pick(&["a", "q", "from", "while", "iterate_", "spine", "a_name_of_some_length", "sun", "x2"]);
+        let name = self.pick(&[
+            "a",
+            "q",
+            "from",
+            "while",
+            "iterate_",
+            "spine",
+            "a_name_of_some_length",
+            "sun",
+            "x2",
+        ]);
         self.put(name);
     }
 
@@ -44,7 +53,16 @@ impl Generator {
             self.item();
             let tokens = std::mem::take(&mut self.tokens);
             self.lay_out(&tokens, &mut text);
-            text += self.pick(&["\n", "\n", "\r\n", " ", " // behind\n", "\n\n\n\n", "\n// between\n\n", "\n/// doc\n"]);
+            text += self.pick(&[
+                "\n",
+                "\n",
+                "\r\n",
+                " ",
+                " // behind\n",
+                "\n\n\n\n",
+                "\n// between\n\n",
+                "\n/// doc\n",
+            ]);
         }
         text
     }
@@ -73,7 +91,7 @@ impl Generator {
 
     fn item(&mut self) {
         self.depth = 2 + self.below(4);
-        match self.below(6) {
+        match self.below(7) {
             0 => {
                 self.put("param");
                 self.name();
@@ -99,8 +117,12 @@ impl Generator {
                 self.put("-> vec3");
                 self.block();
             }
+            3 => {
+                self.put("import \"lib/clouds.vol\" as");
+                self.name();
+            }
             _ => {
-                let block = self.pick(&["camera", "light", "object", "medium", "render"]);
+                let block = self.pick(&["camera", "light", "object", "medium", "render", "style"]);
                 self.put(block);
                 if self.below(2) == 0 {
                     self.name();
@@ -167,8 +189,18 @@ impl Generator {
 
     fn expr(&mut self) {
         if self.depth == 0 {
-            let leaf =
-                self.pick(&["1", ".5", "2e-3", "500ms", "#ffF", "\"a // b\\\"é\"", "true", "q", "time", "- 1.0"]);
+            let leaf = self.pick(&[
+                "1",
+                ".5",
+                "2e-3",
+                "500ms",
+                "#ffF",
+                "\"a // b\\\"é\"",
+                "true",
+                "q",
+                "time",
+                "- 1.0",
+            ]);
             return self.put(leaf);
         }
         self.depth -= 1;
@@ -177,7 +209,8 @@ impl Generator {
                 for _ in 0..1 + self.below(4) {
                     self.operand();
                     let operator = self.pick(&[
-                        "+", "-", "*", "/", "%", "|", "&", "||", "&&", "==", "<", ">=", "+", "*", "- -", "* !", "- - -",
+                        "+", "-", "*", "/", "%", "|", "&", "||", "&&", "==", "<", ">=", "+", "*", "- -",
+                        "* !", "- - -",
                     ]);
                     self.put(operator);
                 }
@@ -198,9 +231,36 @@ impl Generator {
             }
             6 => self.block(),
             7 => self.record(),
+            8 => self.iterate(),
             _ => self.operand(),
         }
         self.depth += 1;
+    }
+
+    fn iterate(&mut self) {
+        self.put("iterate");
+        self.expr();
+        self.put("from");
+        self.states();
+        if self.below(2) == 0 {
+            self.put("while");
+            self.expr();
+        }
+        self.put(":");
+        self.states();
+    }
+
+    fn states(&mut self) {
+        self.put("(");
+        for _ in 0..self.below(3) {
+            self.name();
+            self.put("=");
+            self.expr();
+            self.put(",");
+        }
+        self.put("z =");
+        self.expr();
+        self.put(")");
     }
 
     fn operand(&mut self) {
@@ -208,8 +268,20 @@ impl Generator {
             return self.expr();
         }
         self.depth -= 1;
-        match self.below(5) {
+        match self.below(7) {
             0 => self.separated("[", "]", Self::expr),
+            3 => {
+                self.put("keys ( time , 0s :");
+                self.expr();
+                self.put(", 2s + 1 :");
+                self.expr();
+                self.put(", ease : smooth )");
+            }
+            4 => {
+                self.put("( at :");
+                self.expr();
+                self.put(", #ff0033 )");
+            }
             1 => {
                 self.put("[ for i in 0 ..");
                 self.sum();
@@ -256,35 +328,83 @@ impl Generator {
 #[test]
 fn generated_scenes_keep_their_meaning() {
     let mut formatted = 0;
-    for seed in 0..6000 {
+    for seed in 0..1000 {
         let text = Generator::new(seed).file();
         formatted += usize::from(check(&text));
     }
     // The others have a line end where none may be.
-    assert!(formatted > 3000, "{formatted}");
+    assert!(formatted > 700, "{formatted}");
 }
 
 #[test]
 fn soups_of_tokens_are_never_damaged() {
     const TOKENS: &[&str] = &[
-        "let a =", "let", "a", "b", "=", "(", ")", "(", ")", "{", "}", "[", "]", ",", ":", "+", "-", "- ", "!",
-        ".", "..", "=>", "if", "then", "else", "1", "#fff", "\n", "\n", " // c\n", "object a {", "camera {",
-        "k: ", "\"s\"", "for i in", "/// d\n", "\r", "\n\n\n", "#vol 1\n", "iterate", "from", "while",
+        "let a =",
+        "let",
+        "a",
+        "b",
+        "=",
+        "(",
+        ")",
+        "(",
+        ")",
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        ":",
+        "+",
+        "-",
+        "- ",
+        "!",
+        ".",
+        "..",
+        "=>",
+        "if",
+        "then",
+        "else",
+        "1",
+        "#fff",
+        "\n",
+        "\n",
+        " // c\n",
+        "object a {",
+        "camera {",
+        "k: ",
+        "\"s\"",
+        "for i in",
+        "/// d\n",
+        "\r",
+        "\n\n\n",
+        "#vol 1\n",
+        "iterate",
+        "from",
+        "while",
     ];
     let mut generator = Generator::new(11);
     let mut formatted = 0;
-    for _ in 0..200_000 {
+    for _ in 0..20_000 {
         let count = 1 + generator.below(12);
         let text: Vec<&str> = (0..count).map(|_| generator.pick(TOKENS)).collect();
         formatted += usize::from(check(&text.join(" ")));
     }
-    assert!(formatted > 1000, "{formatted}");
+    assert!(formatted > 300, "{formatted}");
 }
 
 #[test]
 fn planted_changes_are_seen() {
     // What a careless formatter may do to a text.
-    let changes = [("// ", "//"), (" - ", " + "), ("1", "2"), (" // why", ""), ("///", "//"), (":", " : 1 +"), ("\n", ""), ("q", "r")];
+    let changes = [
+        ("// ", "//"),
+        (" - ", " + "),
+        ("1", "2"),
+        (" // why", ""),
+        ("///", "//"),
+        (":", " : 1 +"),
+        ("\n", ""),
+        ("q", "r"),
+    ];
     let mut seen = 0;
     for seed in 0..200 {
         let text = Generator::new(seed).file();

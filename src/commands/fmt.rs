@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Read as _, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use similar::TextDiff;
 use vol::failure::Failure;
@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &cli::Fmt) -> Result<(), Failure> {
 /// A scene before and after.
 struct Change {
     /// As messages call it.
-    name: PathBuf,
+    name: String,
     /// As it was read, with its byte-order mark and line ends.
     before: String,
     after: String,
@@ -71,7 +71,7 @@ fn change(name: &Path, bytes: Vec<u8>) -> Result<Change, Failure> {
     let file = SourceFile::from_bytes(name.display().to_string(), bytes)
         .map_err(|error| session::not_a_scene(name, &error))?;
     match fmt::format(&file) {
-        Ok(after) => Ok(Change { name: name.to_owned(), before, after }),
+        Ok(after) => Ok(Change { name: name.display().to_string(), before, after }),
         Err(FormatError::Syntax(diagnostics)) => {
             Err(Failure::Scene { sources: Box::new(file.into()), diagnostics })
         }
@@ -87,11 +87,11 @@ fn show(change: &Change, arguments: &cli::Fmt) -> Result<(), Failure> {
     if change.before == change.after {
         return Ok(());
     }
-    let name = change.name.display().to_string();
+    let name = &change.name;
     if arguments.diff {
         let diff = TextDiff::from_lines(&change.before, &change.after);
         let mut diff = diff.unified_diff();
-        print(&diff.context_radius(CONTEXT_LINES).header(&name, &name).to_string())?;
+        print(&diff.context_radius(CONTEXT_LINES).header(name, name).to_string())?;
     } else {
         print(&format!("{name}\n"))?;
     }

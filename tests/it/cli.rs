@@ -3,10 +3,12 @@
 //! * [`pictures`]: what `vol render` writes
 //! * [`answers`]: what `vol check`, `compile`, `query` and `diff` say
 //! * [`files`]: scenes of several files, params and chosen blocks
+//! * [`formatting`]: what `vol fmt` writes and says
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
 mod answers;
 mod files;
+mod formatting;
 mod mistakes;
 mod pictures;
 
@@ -18,7 +20,7 @@ use tempfile::TempDir;
 
 /// The trials of this folder.
 pub(crate) fn trials() -> Vec<Trial> {
-    [pictures::trials(), answers::trials(), files::trials(), mistakes::trials()]
+    [pictures::trials(), answers::trials(), files::trials(), formatting::trials(), mistakes::trials()]
         .into_iter()
         .flatten()
         .collect()

@@ -14,9 +14,7 @@ const TUTORIAL: &str = "docs/tutorial.md";
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
     for page in PAGES {
-        let text =
-            std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap_or_default();
-        let blocks = blocks(&text);
+        let blocks = blocks_of(page);
         let count = blocks.len();
         trials.push(Trial::test(format!("spec::{page}_has_blocks"), move || {
             if count > 0 { Ok(()) } else { Err("no block of vol code was found".into()) }
@@ -30,6 +28,17 @@ pub(crate) fn trials() -> Vec<Trial> {
         }
     }
     trials
+}
+
+/// All blocks: page, line and text.
+pub(crate) fn all_blocks() -> Vec<(&'static str, usize, String)> {
+    let of_page = |page| blocks_of(page).into_iter().map(move |(line, block)| (page, line, block));
+    PAGES.into_iter().flat_map(of_page).collect()
+}
+
+fn blocks_of(page: &str) -> Vec<(usize, String)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+    blocks(&std::fs::read_to_string(path).unwrap_or_default())
 }
 
 fn compiles(block: &str) -> Result<(), Failed> {

@@ -39,7 +39,7 @@ fn gpu_trials() -> Vec<Trial> {
 
 fn help(sandbox: &Sandbox) -> Result<(), Failed> {
     let help = sandbox.vol("--help")?.expect(0, &[])?.stdout;
-    for command in ["render", "check", "compile", "query", "diff", "Exit codes"] {
+    for command in ["render", "check", "fmt", "compile", "query", "diff", "Exit codes"] {
         equal((command, help.contains(command)), (command, true))?;
     }
     let version = sandbox.vol("--version")?.expect(0, &[])?.stdout;

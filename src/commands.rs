@@ -6,8 +6,8 @@
 mod check;
 mod compile;
 mod diff;
-mod params;
 mod fmt;
+mod params;
 mod progress;
 mod query;
 mod render;

@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Params(Params),
     /// Lay out scenes in the one usual way
     Fmt(Fmt),
+    /// Tell the story behind a code such as E0203, with a scene before and after
+    Explain(Explain),
     /// Translate a scene to a shader
     Compile(Compile),
     /// Evaluate a field of a scene at given points
@@ -124,6 +126,13 @@ pub(crate) struct Fmt {
     /// Write nothing; show what would change as a unified diff
     #[arg(long)]
     pub(crate) diff: bool,
+}
+
+/// Arguments of `vol explain`.
+#[derive(Debug, Args)]
+pub(crate) struct Explain {
+    /// The code [default: list all codes]
+    pub(crate) code: Option<String>,
 }
 
 /// Arguments of `vol compile`.

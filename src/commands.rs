@@ -7,6 +7,7 @@ mod check;
 mod compile;
 mod diff;
 mod fmt;
+mod explain;
 mod params;
 mod progress;
 mod query;
@@ -41,6 +42,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Check(arguments) => check::run(arguments),
         Command::Params(arguments) => params::run(arguments),
         Command::Fmt(arguments) => fmt::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::Compile(arguments) => compile::run(arguments),
         Command::Query(arguments) => query::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),

@@ -9,6 +9,7 @@
 
 pub mod backend;
 pub mod compare;
+pub mod explain;
 pub mod failure;
 pub mod output;
 pub mod session;

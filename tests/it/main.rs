@@ -9,6 +9,7 @@ mod cli;
 mod differential;
 mod docs;
 mod examples;
+mod explain;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod noises;
@@ -30,6 +31,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(differential::trials());
     trials.extend(docs::trials());
     trials.extend(examples::trials());
+    trials.extend(explain::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

@@ -8,8 +8,9 @@ pub(crate) use vol_compiler::ir::verify::random::Random;
 use vol_compiler::ir::{Function, FunctionId, Module};
 use vol_compiler::program::Program;
 use vol_language::Analysis;
+use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
-use vol_language::source::SourceFile;
+use vol_language::source::{SourceFile, Sources};
 
 /// The scenes of `examples/`, in alphabetical order.
 pub(crate) fn examples() -> Vec<(String, PathBuf)> {
@@ -39,7 +40,20 @@ pub(crate) fn compile(name: &str, text: &str) -> Result<Program, Failed> {
 
 /// Analyses and compiles a scene text and renders what there is to say about it.
 pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>, String) {
-    let file = SourceFile::new(name, text);
+    let Diagnosed { program, diagnostics, sources } = diagnose(SourceFile::new(name, text));
+    (program, vol_language::diag::render::human(&sources, &diagnostics, false))
+}
+
+/// A scene as far as it goes, and what there is to say about it.
+pub(crate) struct Diagnosed {
+    /// Present if it compiles and its first frame can be made.
+    pub(crate) program: Option<Program>,
+    pub(crate) diagnostics: Vec<Diagnostic>,
+    pub(crate) sources: Sources,
+}
+
+/// Analyses and compiles a scene and makes its first frame.
+pub(crate) fn diagnose(file: SourceFile) -> Diagnosed {
     let Analysis { scene, mut diagnostics, sources } =
         vol_language::analyse_with(file, &vol_compiler::library::library(), &Shared);
     let mut program = None;
@@ -58,7 +72,7 @@ pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>,
         }
         (_, None | Some(Ok(_))) => {}
     }
-    (program, vol_language::diag::render::human(&sources, &diagnostics, false))
+    Diagnosed { program, diagnostics, sources }
 }
 
 /// Imports come from `tests/ui`.
@@ -121,4 +135,17 @@ pub(crate) fn point(random: &mut Random, lo: [f64; 3], hi: [f64; 3]) -> [f32; 3]
 /// Fails with a message unless a condition holds.
 pub(crate) fn ensure(condition: bool, message: impl FnOnce() -> String) -> Result<(), Failed> {
     if condition { Ok(()) } else { Err(message().into()) }
+}
+
+/// Fails unless a generated page of the repository holds `text`; with the environment variable
+/// `VOL_UPDATE_DOCS` set it writes the page instead.
+pub(crate) fn ensure_page(page: &str, text: &str) -> Result<(), Failed> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+    if std::env::var_os("VOL_UPDATE_DOCS").is_some() {
+        return Ok(std::fs::write(path, text)?);
+    }
+    let found = std::fs::read_to_string(&path).unwrap_or_default();
+    ensure(found == text, || {
+        format!("{page} is out of date: run `VOL_UPDATE_DOCS=1 cargo test --test it -- docs::`")
+    })
 }

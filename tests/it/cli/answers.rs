@@ -12,6 +12,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("check::human", check_human),
         trial("check::json", check_json),
         trial("check::all_files_are_checked", check_all),
+        trial("explain", explain),
         trial("compile::wgsl", compile),
         trial("query::reference_and_cpu", query),
         trial("query::points_from_a_file", query_file),
@@ -39,7 +40,7 @@ fn gpu_trials() -> Vec<Trial> {
 
 fn help(sandbox: &Sandbox) -> Result<(), Failed> {
     let help = sandbox.vol("--help")?.expect(0, &[])?.stdout;
-    for command in ["render", "check", "fmt", "compile", "query", "diff", "Exit codes"] {
+    for command in ["render", "check", "fmt", "params", "explain", "compile", "query", "diff", "Exit codes"] {
         equal((command, help.contains(command)), (command, true))?;
     }
     let version = sandbox.vol("--version")?.expect(0, &[])?.stdout;
@@ -83,6 +84,20 @@ fn check_all(sandbox: &Sandbox) -> Result<(), Failed> {
         .vol("check missing.vol bad.vol ball.vol")?
         .expect(2, &["cannot read `missing.vol`", "bad.vol:1", "fine"])?;
     sandbox.vol("check bad.vol missing.vol")?.expect(2, &[]).map(drop)
+}
+
+fn explain(sandbox: &Sandbox) -> Result<(), Failed> {
+    let list = sandbox.vol("explain")?.expect(0, &[])?.stdout;
+    equal(list.lines().count(), vol::explain::codes().len())?;
+    equal(list.contains("\nE0206  a bare number stands where an angle is expected\n"), true)?;
+    let story = sandbox.vol("explain e0206")?.expect(0, &[])?.stdout;
+    for part in ["E0206: a bare", "\nbefore:\n\n    param", "\nafter:\n\n    param", "rotate_x(30deg)"] {
+        equal((part, story.contains(part)), (part, true))?;
+    }
+    equal(story.contains("```"), false)?;
+    sandbox.vol("explain E206")?.expect(2, &["no code `E206`", "did you mean `E0206`?"])?;
+    sandbox.vol("explain sphere")?.expect(2, &["no code `sphere`", "`vol explain` lists all codes"])?;
+    Ok(())
 }
 
 fn compile(sandbox: &Sandbox) -> Result<(), Failed> {

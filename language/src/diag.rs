@@ -4,7 +4,10 @@
 //! lower case, one sentence, no final stop, the user's terms, and a help line that says what to
 //! write.
 
+mod fix;
 pub mod render;
+
+pub use fix::{Edit, Fix, apply_all};
 
 use crate::source::Span;
 use serde::Serialize;
@@ -41,6 +44,8 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// What to write instead.
     pub help: Option<String>,
+    /// Repairs that each would do away with the message; several are a choice that the author has.
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
@@ -58,6 +63,7 @@ impl Diagnostic {
             message: message.into(),
             labels: vec![Label { span, text: label.into() }],
             help: None,
+            fixes: Vec::new(),
         }
     }
 
@@ -84,6 +90,27 @@ impl Diagnostic {
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
+    }
+
+    /// Adds a repair.
+    #[must_use]
+    pub fn with_fix(mut self, fix: impl Into<Option<Fix>>) -> Self {
+        self.fixes.extend(fix.into());
+        self
+    }
+
+    /// Adds the help line and the repair for a name that is spelt nearly like the known one `near`.
+    #[must_use]
+    pub fn did_you_mean(self, near: &str, span: Span) -> Self {
+        self.with_help(format!("did you mean `{near}`")).with_fix(Fix::replace(span, near))
+    }
+
+    /// Moves all places towards the end by `bytes`: from those of one file to those of all files.
+    pub fn shift(&mut self, bytes: u32) {
+        let edits = self.fixes.iter_mut().flat_map(|fix| &mut fix.edits).map(|edit| &mut edit.span);
+        for span in self.labels.iter_mut().map(|label| &mut label.span).chain(edits) {
+            *span = span.shifted(bytes);
+        }
     }
 
     /// Whether it is an error.

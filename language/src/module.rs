@@ -149,9 +149,7 @@ impl Walk<'_> {
         let index = self.loaded.sources.add(file);
         let start = self.loaded.sources.start(index);
         ast::spans::shift(&mut tree, start);
-        for label in found.iter_mut().flat_map(|diagnostic| &mut diagnostic.labels) {
-            label.span = label.span.shifted(start);
-        }
+        found.iter_mut().for_each(|diagnostic| diagnostic.shift(start));
         self.loaded.diagnostics.extend(found);
         let prefix = format!("{}{}.", self.loaded.modules[from].prefix, import.alias.text);
         self.loaded.modules.push(Module { file: tree, imports: Vec::new(), prefix, path });

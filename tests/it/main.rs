@@ -10,6 +10,7 @@ mod differential;
 mod docs;
 mod examples;
 mod explain;
+mod fixes;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod noises;
@@ -32,6 +33,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(docs::trials());
     trials.extend(examples::trials());
     trials.extend(explain::trials());
+    trials.extend(fixes::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

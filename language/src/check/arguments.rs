@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::call::Arg;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::source::Span;
 
 /// A parameter as far as binding cares.
@@ -82,6 +82,13 @@ pub(super) fn bind(slots: &[Slot<'_>], args: &[Arg<'_>]) -> Result<Vec<Given>, M
     if missing.is_empty() { Ok(given) } else { Err(Misfit::Missing(missing)) }
 }
 
+/// Brackets around the components of a vector.
+fn bracketed(components: Span) -> Fix {
+    let Span { start, end } = components;
+    let edits = [(Span { start, end: start }, "("), (Span { start: end, end }, ")")];
+    Fix::new("put the vector into brackets", edits)
+}
+
 impl<'a> Checker<'a> {
     /// Reports arguments that do not fit `form`, the way in which `callee` is called.
     pub(super) fn report_misfit(
@@ -109,7 +116,9 @@ impl<'a> Checker<'a> {
                 if form.contains("vec3") {
                     // The components of a vector given one by one.
                     let help = format!("the form is `{form}`; a vector takes brackets: `(x, y, z)`");
-                    self.report(error.with_help(help));
+                    let is_last = form.contains(": vec3)") && given == args.len() && given == most + 2;
+                    let fix = is_last.then(|| bracketed(args[most - 1].span.to(args[given - 1].span)));
+                    self.report(error.with_help(help).with_fix(fix));
                     return;
                 }
                 error
@@ -119,7 +128,8 @@ impl<'a> Checker<'a> {
                 let message = format!("`{callee}` has no argument `{name}`");
                 let error = Diagnostic::error("E0213", message, place(i), "this name is not known here");
                 if let Some(near) = self.suggest(name, |_| slots.iter().map(|slot| slot.name).collect()) {
-                    self.report(error.with_help(format!("did you mean `{near}:`; the form is `{form}`")));
+                    let help = format!("did you mean `{near}:`; the form is `{form}`");
+                    self.report(error.with_help(help).with_fix(Fix::replace(place(i), near)));
                     return;
                 }
                 error

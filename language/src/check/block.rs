@@ -4,7 +4,7 @@ use super::Checker;
 use super::convert::Role;
 use crate::ast::{self, Entry, ExprKind, Name};
 use crate::blocks::{BLOCK_KINDS, BlockKind, Key};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{self, ExprId};
 use crate::source::Span;
 use crate::ty::Type;
@@ -46,12 +46,13 @@ impl<'a> Checker<'a> {
     fn report_kind(&mut self, keyword: &Name) {
         let text = &keyword.text;
         let keywords = BLOCK_KINDS.map(BlockKind::keyword);
-        let help = match self.suggest(text, |_| keywords.to_vec()) {
-            Some(near) => format!("did you mean `{near}`"),
-            None => format!("the blocks are `{}`", keywords.join("`, `")),
-        };
         let message = format!("there is no block `{text}`");
-        self.report(Diagnostic::error("E0301", message, keyword.span, "no such block").with_help(help));
+        let error = Diagnostic::error("E0301", message, keyword.span, "no such block");
+        let error = match self.suggest(text, |_| keywords.to_vec()) {
+            Some(near) => error.did_you_mean(&near, keyword.span),
+            None => error.with_help(format!("the blocks are `{}`", keywords.join("`, `"))),
+        };
+        self.report(error);
     }
 
     fn check_block_name(&mut self, block: &'a ast::Block, names: &mut HashMap<&'a str, Span>) {
@@ -59,7 +60,9 @@ impl<'a> Checker<'a> {
         let Some(name) = &block.name else {
             let message = format!("this {} has no name", keyword.text);
             let error = Diagnostic::error("E0306", message, keyword.span, "a name is missing after this");
-            self.report(error.with_help(format!("write `{} my_{} {{ … }}`", keyword.text, keyword.text)));
+            let fix = Fix::insert(keyword.span.end, format!(" my_{}", keyword.text));
+            let help = format!("write `{} my_{} {{ … }}`", keyword.text, keyword.text);
+            self.report(error.with_help(help).with_fix(fix));
             return;
         };
         if let Some(&first) = names.get(name.text.as_str()) {
@@ -77,7 +80,8 @@ impl<'a> Checker<'a> {
             let keyword = &block.keyword.text;
             let message = format!("a {keyword} block takes no name");
             let error = Diagnostic::error("E0306", message, name.span, "a name stands here");
-            self.report(error.with_help(format!("write `{keyword} {{ … }}`")));
+            let fix = Fix::remove(Span { start: block.keyword.span.end, end: name.span.end });
+            self.report(error.with_help(format!("write `{keyword} {{ … }}`")).with_fix(fix));
         }
     }
 
@@ -91,9 +95,9 @@ impl<'a> Checker<'a> {
     fn check_block(&mut self, block: &'a ast::Block, kind: BlockKind) {
         let span = block.name.as_ref().map_or(block.keyword.span, |name| block.keyword.span.to(name.span));
         let keys = kind.keys();
-        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let mut seen: HashMap<&str, usize> = HashMap::new();
         let mut entries = Vec::with_capacity(block.entries.len());
-        for entry in &block.entries {
+        for (i, entry) in block.entries.iter().enumerate() {
             let Some(key) = keys.iter().find(|key| key.name == entry.key.text) else {
                 let article = if kind == BlockKind::Object { "an" } else { "a" };
                 self.report_key(entry, &format!("{article} {} has", kind.keyword()), &keys);
@@ -101,9 +105,9 @@ impl<'a> Checker<'a> {
             };
             let value = self.expect(&entry.value, &key.ty, Role::Key(key.name));
             match seen.get(key.name) {
-                Some(&first) => self.report_key_twice(&entry.key, first),
+                Some(&first) => self.report_key_twice(&block.entries, first, i),
                 None => {
-                    seen.insert(key.name, entry.key.span);
+                    seen.insert(key.name, i);
                     entries.push((key.name, value));
                 }
             }
@@ -129,12 +133,13 @@ impl<'a> Checker<'a> {
         let text = &entry.key.text;
         let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
         let near = self.suggest(text, |_| known.clone());
-        let help = match &near {
-            Some(near) => format!("did you mean `{near}`"),
-            None => format!("the keys are `{}`", known.join("`, `")),
-        };
         let message = format!("{owner} no key `{text}`");
-        self.report(Diagnostic::error("E0302", message, entry.key.span, "no such key").with_help(help));
+        let error = Diagnostic::error("E0302", message, entry.key.span, "no such key");
+        let error = match &near {
+            Some(near) => error.did_you_mean(near, entry.key.span),
+            None => error.with_help(format!("the keys are `{}`", known.join("`, `"))),
+        };
+        self.report(error);
         // The value may have mistakes of its own, unless only its key could say what it is.
         if let Some(key) = keys.iter().find(|key| near.as_deref() == Some(key.name)) {
             self.expect(&entry.value, &key.ty, Role::Key(key.name));
@@ -143,10 +148,20 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(super) fn report_key_twice(&mut self, key: &Name, first: Span) {
+    /// Reports that entry `second` has the key of the earlier entry `first`.
+    pub(super) fn report_key_twice(&mut self, entries: &[Entry], first: usize, second: usize) {
+        let (key, first_key) = (&entries[second].key, entries[first].key.span);
         let message = format!("`{}` is given twice", key.text);
         let error = Diagnostic::error("E0303", message, key.span, "given again here");
-        self.report(error.with_label(first, "first given here").with_help("remove one of them"));
+        let before = Span { start: entries[second - 1].value.span.end, end: entries[second].value.span.end };
+        let after = Span { start: first_key.start, end: entries[first + 1].key.span.start };
+        let fixes = [("remove the first", after), ("remove the second", before)];
+        let error = error.with_label(first_key, "first given here").with_help("remove one of them");
+        self.report(
+            fixes
+                .into_iter()
+                .fold(error, |error, (title, span)| error.with_fix(Fix::new(title, [(span, "")]))),
+        );
     }
 
     /// Whether an expression is present and free of errors.

@@ -7,7 +7,7 @@ use super::convert::Role;
 use super::item::{Head, Kind};
 use super::words;
 use crate::ast::{Argument, Expr, Name};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{ExprId, ExprKind};
 use crate::library::BuiltinId;
 use crate::module::ModuleId;
@@ -167,10 +167,12 @@ impl<'a> Checker<'a> {
             }
         };
         let form = Type::Function(function.clone()).to_string();
-        if let Some(name) = args.iter().find_map(|arg| arg.name) {
+        if let Some((name, value)) = args.iter().find_map(|arg| Some((arg.name?, arg.span))) {
             let message = "the arguments of a function value have no names";
             let error = Diagnostic::error("E0213", message, name.span, "a name is given here");
-            self.report(error.with_help(format!("remove `{}:`; the function is `{form}`", name.text)));
+            let fix = Fix::remove(Span { start: name.span.start, end: value.start });
+            let help = format!("remove `{}:`; the function is `{form}`", name.text);
+            self.report(error.with_help(help).with_fix(fix));
             return self.abandon(&args, span);
         }
         if args.len() != function.params.len() {

@@ -83,31 +83,31 @@ impl<'a> Checker<'a> {
         let names: Vec<&str> = words.iter().map(|word| word.name).collect();
         let message = format!("there is no {} `{found}`", kind.name());
         let error = Diagnostic::error("E0310", message, span, format!("no such {}", kind.name()));
-        let help = match self.suggest(found, |_| names.clone()) {
-            Some(near) => format!("did you mean `{near}`"),
+        let error = match self.suggest(found, |_| names.clone()) {
+            Some(near) => error.did_you_mean(&near, span),
             None => {
                 let forms: Vec<String> = words.iter().map(|word| format!("`{}`", form(word))).collect();
-                format!("write {}", forms.join(" or "))
+                error.with_help(format!("write {}", forms.join(" or ")))
             }
         };
-        self.report(error.with_help(help));
+        self.report(error);
     }
 
     /// `{ key: value, … }` where settings are asked for.
     pub(super) fn settings(&mut self, entries: &'a [Entry], kind: SettingsKind, span: Span) -> ExprId {
         let keys = kind.keys();
-        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let mut seen: HashMap<&str, usize> = HashMap::new();
         let mut given = Vec::with_capacity(entries.len());
-        for entry in entries {
+        for (i, entry) in entries.iter().enumerate() {
             let Some(key) = keys.iter().find(|key| key.name == entry.key.text) else {
                 self.report_key(entry, &format!("{} have", kind.name()), &keys);
                 continue;
             };
             let value = self.expect(&entry.value, &key.ty, Role::Key(key.name));
             match seen.get(key.name) {
-                Some(&first) => self.report_key_twice(&entry.key, first),
+                Some(&first) => self.report_key_twice(entries, first, i),
                 None => {
-                    seen.insert(key.name, entry.key.span);
+                    seen.insert(key.name, i);
                     given.push((key.name, value));
                 }
             }
@@ -139,15 +139,15 @@ impl<'a> Checker<'a> {
             names.sort_unstable();
             names
         };
-        let help = match (self.suggest(name, known), &known(self)[..]) {
-            (Some(near), _) => format!("did you mean `{near}`"),
+        let error = match (self.suggest(name, known), &known(self)[..]) {
+            (Some(near), _) => error.did_you_mean(&near, span),
             (None, []) if self.block_names.contains_key(name) => {
-                format!("the scene has no {keyword} with a name")
+                error.with_help(format!("the scene has no {keyword} with a name"))
             }
-            (None, []) => format!("add a block: `{keyword} {name} {{ … }}`"),
-            (None, names) => format!("the scene has `{}`", names.join("`, `")),
+            (None, []) => error.with_help(format!("add a block: `{keyword} {name} {{ … }}`")),
+            (None, names) => error.with_help(format!("the scene has `{}`", names.join("`, `"))),
         };
-        self.report(error.with_help(help));
+        self.report(error);
         self.wrong(span)
     }
 

@@ -5,7 +5,7 @@ use super::convert::{Role, join, linear_from_srgb};
 use super::words::a;
 use super::{Checker, MAX_INT};
 use crate::ast::{Argument, BinaryOp, Expr, ExprKind, Let, Name};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{self, ExprId, LocalId, Over};
 use crate::source::Span;
 use crate::ty::Type;
@@ -316,10 +316,13 @@ impl<'a> Checker<'a> {
                 let message = format!("`for … in` walks a range or a list, not {}", a(&ty));
                 let error = Diagnostic::error("E0231", message, range.span, format!("this is {}", a(&ty)));
                 let text = self.source_text(list).unwrap_or_else(|| "12".to_owned());
-                self.report(error.with_help(match ty {
-                    Type::Int | Type::Float => format!("write `0..{text}`"),
-                    _ => "write a range, such as `0..8`, or a list, such as `[1, 2, 3]`".to_owned(),
-                }));
+                self.report(if matches!(ty, Type::Int | Type::Float) {
+                    error
+                        .with_help(format!("write `0..{text}`"))
+                        .with_fix(Fix::insert(range.span.start, "0.."))
+                } else {
+                    error.with_help("write a range, such as `0..8`, or a list, such as `[1, 2, 3]`")
+                });
                 (Over::List(list), Type::Error)
             }
         }

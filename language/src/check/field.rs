@@ -3,7 +3,7 @@
 use super::Checker;
 use super::words::a;
 use crate::ast::Name;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{ExprId, ExprKind, LocalField};
 use crate::source::Span;
 use crate::ty::Type;
@@ -39,32 +39,35 @@ impl<'a> Checker<'a> {
         let text = name.text.as_str();
         let message = format!("{} has no field `{text}`", a(ty));
         let error = Diagnostic::error("E0209", message, name.span, "no such field");
-        let help = if self.builtins.contains_key(text) {
-            format!("call it: `.{text}(…)`")
+        let error = if self.builtins.contains_key(text) {
+            error.with_help(format!("call it: `.{text}(…)`"))
         } else if *ty == Type::Local && components(&Type::Vec3, text).is_some() {
-            format!("write `.local.{text}`, or `.world.{text}`")
+            let through = |field| Fix::insert(name.span.start, field);
+            let help = format!("write `.local.{text}`, or `.world.{text}`");
+            error.with_help(help).with_fix(through("local.")).with_fix(through("world."))
         } else if *ty == Type::Local {
             let fields: Vec<&str> = LocalField::ALL.iter().map(|(_, known, _)| *known).collect();
             match self.suggest(text, |_| fields.clone()) {
-                Some(near) => format!("did you mean `.{near}`"),
-                None => format!("it has `.{}`", fields.join("`, `.")),
+                Some(near) => error.did_you_mean(&near, name.span),
+                None => error.with_help(format!("it has `.{}`", fields.join("`, `."))),
             }
         } else if let Type::Record(record) = ty {
             let fields: Vec<&str> = record.fields.iter().map(|(known, _)| known.as_str()).collect();
             match self.suggest(text, |_| fields.clone()) {
-                Some(near) => format!("did you mean `.{near}`"),
-                None => format!("it has `.{}`", fields.join("`, `.")),
+                Some(near) => error.did_you_mean(&near, name.span),
+                None => error.with_help(format!("it has `.{}`", fields.join("`, `."))),
             }
         } else if let Some(letters) = letters(ty) {
             let letters: Vec<String> = letters.chars().map(|letter| format!("`.{letter}`")).collect();
-            format!("it has {}, and up to four of these letters together", letters.join(", "))
+            let help = format!("it has {}, and up to four of these letters together", letters.join(", "));
+            error.with_help(help)
         } else {
             let message = format!("{} has no fields", a(ty));
             let error = Diagnostic::error("E0209", message, name.span, "no such field");
             self.report(error.with_help(format!("remove `.{text}`")));
             return;
         };
-        self.report(error.with_help(help));
+        self.report(error);
     }
 }
 

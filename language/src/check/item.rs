@@ -6,7 +6,7 @@ use super::names::mentioned;
 use super::{BUILT_IN_VALUES, construct};
 use crate::ast::{self, ItemKind, Name, TypeExpr, TypeExprKind};
 use crate::blocks::BLOCK_KINDS;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{self, ExprId, FunctionId, LetId, ParamId};
 use crate::module::ModuleId;
 use crate::source::Span;
@@ -162,7 +162,8 @@ impl<'a> Checker<'a> {
                 name.span,
                 "never used",
             );
-            self.diagnostics.push(warning.with_help(format!("remove it, or call it `_{text}`")));
+            let warning = warning.with_help(format!("remove it, or call it `_{text}`"));
+            self.diagnostics.push(warning.with_fix(Fix::insert(name.span.start, "_")));
         }
     }
 
@@ -287,12 +288,12 @@ impl<'a> Checker<'a> {
             return known;
         }
         let names: Vec<String> = Type::all_named().iter().map(Type::to_string).collect();
-        let help = match self.suggest(name, |_| names.iter().map(String::as_str).collect()) {
-            Some(near) => format!("did you mean `{near}`"),
-            None => format!("the types are `{}`", names.join("`, `")),
-        };
         let error = Diagnostic::error("E0204", format!("there is no type `{name}`"), ty.span, "no such type");
-        self.report(error.with_help(help));
+        let error = match self.suggest(name, |_| names.iter().map(String::as_str).collect()) {
+            Some(near) => error.did_you_mean(&near, ty.span),
+            None => error.with_help(format!("the types are `{}`", names.join("`, `"))),
+        };
+        self.report(error);
         Type::Error
     }
 }

@@ -3,8 +3,9 @@
 use super::Checker;
 use super::convert::Role;
 use super::words::a;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{ExprId, ExprKind};
+use crate::source::Span;
 use crate::ty::Type;
 
 impl<'a> Checker<'a> {
@@ -24,7 +25,9 @@ impl<'a> Checker<'a> {
                 let message = format!("expected {}{role}, found {}", wanted(to, &from), a(&from));
                 let error =
                     Diagnostic::error("E0205", message, self.span(id), format!("this is {}", a(&from)));
-                error.with_help(self.mismatch_help(id, &from, to).unwrap_or_else(|| self.example(to)))
+                let error =
+                    error.with_help(self.mismatch_help(id, &from, to).unwrap_or_else(|| self.example(to)));
+                self.mismatch_fixes(id, &from, to).into_iter().fold(error, Diagnostic::with_fix)
             }
         };
         self.report(error);
@@ -34,18 +37,66 @@ impl<'a> Checker<'a> {
     pub(super) fn bare_number(&self, id: ExprId, role: Role<'_>) -> Diagnostic {
         let message = format!("expected an angle{role}, found a bare number");
         let error = Diagnostic::error("E0206", message, self.span(id), "this number has no unit");
-        error.with_help(match self.source_text(id) {
-            Some(text) if self.is_literal(id) => format!("write `{text}deg`, or `{text}rad` for radians"),
-            Some(text) => format!("write `{text} * 1deg`, or `{text} * 1rad` for radians"),
-            None => "multiply by a unit: `(…) * 1deg`, or `(…) * 1rad` for radians".to_owned(),
-        })
+        error
+            .with_help(match self.source_text(id) {
+                Some(text) if self.is_literal(id) => format!("write `{text}deg`, or `{text}rad` for radians"),
+                Some(text) => format!("write `{text} * 1deg`, or `{text} * 1rad` for radians"),
+                None => "multiply by a unit: `(…) * 1deg`, or `(…) * 1rad` for radians".to_owned(),
+            })
+            .with_fix(match self.is_literal(id) {
+                true => Fix::insert(self.span(id).end, "deg"),
+                false => self.appended(id, " * 1deg"),
+            })
     }
 
     /// An angle where a number is expected.
     fn unwanted_angle(&self, id: ExprId, to: &Type, role: Role<'_>) -> Diagnostic {
         let message = format!("expected {}{role}, found an angle", a(to));
         let error = Diagnostic::error("E0207", message, self.span(id), "this is an angle");
-        error.with_help(self.unit_help(id))
+        let units = [self.appended(id, " / 1rad"), self.appended(id, " / 1deg")];
+        units.into_iter().fold(error.with_help(self.unit_help(id)), Diagnostic::with_fix)
+    }
+
+    /// Writes something after a value, which gets brackets unless it is a single word.
+    fn appended(&self, id: ExprId, suffix: &str) -> Fix {
+        let span = self.span(id);
+        match self.source_text(id) {
+            Some(_) => Fix::insert(span.end, suffix),
+            None => self.wrapped(id, "(", &format!("){suffix}")),
+        }
+    }
+
+    fn wrapped(&self, id: ExprId, before: &str, after: &str) -> Fix {
+        let Span { start, end } = self.span(id);
+        let edits = [(Span { start, end: start }, before), (Span { start: end, end }, after)];
+        Fix::new(format!("write `{before}…{after}`"), edits)
+    }
+
+    /// The repairs that [`Self::mismatch_help`] speaks of; several where it offers a choice.
+    fn mismatch_fixes(&self, id: ExprId, from: &Type, to: &Type) -> Vec<Fix> {
+        match (from, to) {
+            (Type::Function(_), _) => vec![],
+            (from, Type::Function(function)) => self.mismatch_fixes(id, from, &function.result),
+            (Type::Float, Type::Int) => match self.constant(id) {
+                Some([value, ..]) if value.fract() == 0.0 && self.is_literal(id) => {
+                    vec![Fix::replace(self.span(id), value.to_string())]
+                }
+                Some(_) | None => vec![],
+            },
+            (Type::Vec3 | Type::Vec4 | Type::Color, Type::Vec2) => vec![self.appended(id, ".xy")],
+            (Type::Vec4, Type::Vec3 | Type::Color) => vec![self.appended(id, ".xyz")],
+            (Type::Vec2, Type::Vec3) => vec![self.wrapped(id, "vec3(", ", 0)")],
+            (Type::Vec3 | Type::Color, Type::Vec4) => vec![self.wrapped(id, "vec4(", ", 0)")],
+            (Type::Local, Type::Vec3) => vec![self.appended(id, ".local"), self.appended(id, ".world")],
+            (Type::Int | Type::Float, Type::Bool) if !self.is_literal(id) => {
+                vec![self.appended(id, " > 0")]
+            }
+            (Type::Int | Type::Float, Type::String) if self.is_literal(id) => {
+                vec![self.wrapped(id, "\"", "\"")]
+            }
+            (from, Type::List(element)) if from == &**element => vec![self.wrapped(id, "[", "]")],
+            _ => vec![],
+        }
     }
 
     /// How to turn an angle into a number.

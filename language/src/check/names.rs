@@ -6,7 +6,7 @@
 
 use super::order::Use;
 use crate::ast::{Argument, Entry, Expr, ExprKind, Function, ItemKind, Iterate, Keys, Name};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::module::{Module, ModuleId};
 use crate::source::Span;
 use std::collections::{HashMap, HashSet};
@@ -248,7 +248,8 @@ impl<'a, 'g> Walker<'a, 'g> {
             binding.name.span,
             "never used",
         );
-        self.warnings.push(warning.with_help(format!("remove it, or call it `_{name}`")));
+        let warning = warning.with_help(format!("remove it, or call it `_{name}`"));
+        self.warnings.push(warning.with_fix(Fix::insert(binding.name.span.start, "_")));
     }
 }
 

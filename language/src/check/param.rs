@@ -4,8 +4,9 @@ use super::Checker;
 use super::convert::Role;
 use super::words::a;
 use crate::ast::{Expr, Param};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{self, ParamId};
+use crate::source::Span;
 use crate::ty::Type;
 
 impl<'a> Checker<'a> {
@@ -54,7 +55,9 @@ impl<'a> Checker<'a> {
         if *ty == Type::Bool || ty.is_vector() {
             let message = format!("{} has no range", a(ty));
             let error = Diagnostic::error("E0230", message, span, "a range stands here");
-            self.report(error.with_help("remove `in` and the range; numbers and angles have one"));
+            let fix = Fix::remove(Span { start: param.default.span.end, end: span.end });
+            let help = "remove `in` and the range; numbers and angles have one";
+            self.report(error.with_help(help).with_fix(fix));
             return None;
         }
         let role = Role::RangeOf(&param.name.text);

@@ -4,7 +4,7 @@ use super::constant::Constant;
 use super::item::Kind;
 use super::{BUILT_IN_VALUES, Checker, construct};
 use crate::ast::{self, Expr, Name};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::hir::{self, ExprId, LocalId};
 use crate::module::ModuleId;
 use crate::source::Span;
@@ -114,7 +114,8 @@ impl<'a> Checker<'a> {
         let message = format!("the function `{name}` stands where a value is expected");
         let error = Diagnostic::error("E0217", message, span, "not called");
         let form = self.form_of(name).unwrap_or_else(|| format!("{name}(…)"));
-        self.report(error.with_help(format!("call it; its form is `{form}`")));
+        let fix = form.starts_with(&format!("{name}()")).then(|| Fix::insert(span.end, "()"));
+        self.report(error.with_help(format!("call it; its form is `{form}`")).with_fix(fix));
         self.wrong(span)
     }
 
@@ -123,12 +124,12 @@ impl<'a> Checker<'a> {
             let items = checker.globals.get(checker.module.0 as usize).into_iter().flat_map(HashMap::keys);
             checker.scope.names().chain(items.copied()).chain(BUILT_IN_VALUES).collect()
         };
-        let help = match self.suggest(name, known) {
-            Some(near) => format!("did you mean `{near}`"),
-            None => format!("define it: `let {name} = …`"),
-        };
         let error = Diagnostic::error("E0201", format!("`{name}` is not defined"), span, "no such name");
-        self.report(error.with_help(help));
+        let error = match self.suggest(name, known) {
+            Some(near) => error.did_you_mean(&near, span),
+            None => error.with_help(format!("define it: `let {name} = …`")),
+        };
+        self.report(error);
         self.wrong(span)
     }
 
@@ -142,13 +143,13 @@ impl<'a> Checker<'a> {
             let users = users.map(|item| item.name.text.as_str());
             users.chain(checker.builtins.keys().copied()).chain(construct::NAMES).collect()
         };
-        let help = match self.suggest(name, known) {
-            Some(near) => format!("did you mean `{near}`"),
-            None => format!("define it: `fn {name}(x: float) -> float {{ … }}`"),
-        };
         let error =
             Diagnostic::error("E0201", format!("there is no function `{name}`"), span, "no such function");
-        self.report(error.with_help(help));
+        let error = match self.suggest(name, known) {
+            Some(near) => error.did_you_mean(&near, span),
+            None => error.with_help(format!("define it: `fn {name}(x: float) -> float {{ … }}`")),
+        };
+        self.report(error);
     }
 
     /// Makes a visible binding; the names of built-in values stay theirs.

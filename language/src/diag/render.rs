@@ -90,21 +90,32 @@ fn floor_boundary(text: &str, at: usize) -> usize {
 
 /// The messages as JSON, one object on each line.
 ///
-/// Byte offsets are those of the label's file; lines and columns count from 1, columns in characters;
-/// ends are exclusive. The message's file is that of its first label.
+/// ```json
+/// {"file": "a.vol", "severity": "error", "code": "E0206", "message": "…", "help": "…",
+///  "labels": [{"file": "a.vol", "start": PLACE, "end": PLACE, "text": "…"}],
+///  "fixes": [{"title": "…", "edits": [{"file": "a.vol", "start": PLACE, "end": PLACE, "text": "45deg"}]}]}
+/// ```
+///
+/// A `PLACE` is `{"byte": 57, "line": 3, "column": 12}`: byte offsets are those of the label's or edit's
+/// file; lines and columns count from 1, columns in characters; ends are exclusive. `severity` is
+/// `error` or `warning`, `help` may be `null`. The first label is the main place, and its file that of
+/// the message. Each of `fixes` would do away with the message when all its `edits` are made; they do
+/// not overlap, and their places are those of the file before any of them.
 #[must_use]
 pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    let mut lines: HashMap<&str, Vec<usize>> = HashMap::new();
+    let mut places = Places { sources, lines: HashMap::new() };
     let mut out = String::new();
     for diagnostic in diagnostics {
-        let labels = diagnostic.labels.iter().map(|label| {
-            let (file, span) = sources.locate(label.span);
-            let lines = lines.entry(&file.name).or_insert_with(|| line_starts(&file.text));
-            let range = clamp(&file.text, span);
-            let start = position(&file.text, lines, range.start);
-            let end = position(&file.text, lines, range.end);
-            JsonLabel { file: &file.name, start, end, text: &label.text }
-        });
+        let labels: Vec<_> =
+            diagnostic.labels.iter().map(|label| places.text(label.span, clamp, &label.text)).collect();
+        let fixes: Vec<_> = diagnostic
+            .fixes
+            .iter()
+            .map(|fix| {
+                let edits = fix.edits.iter().map(|edit| places.text(edit.span, whole, &edit.text)).collect();
+                JsonFix { title: &fix.title, edits }
+            })
+            .collect();
         let place = diagnostic.labels.first().map_or(Span::default(), |label| label.span);
         let shown = JsonDiagnostic {
             file: &sources.locate(place).0.name,
@@ -112,7 +123,8 @@ pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
             code: diagnostic.code,
             message: &diagnostic.message,
             help: diagnostic.help.as_deref(),
-            labels: labels.collect(),
+            labels,
+            fixes,
         };
         out += &serde_json::to_string(&shown).expect("strings and numbers always become JSON");
         out.push('\n');
@@ -128,6 +140,7 @@ struct JsonDiagnostic<'a> {
     message: &'a str,
     help: Option<&'a str>,
     labels: Vec<JsonLabel<'a>>,
+    fixes: Vec<JsonFix<'a>>,
 }
 
 #[derive(Serialize)]
@@ -139,10 +152,40 @@ struct JsonLabel<'a> {
 }
 
 #[derive(Serialize)]
+struct JsonFix<'a> {
+    title: &'a str,
+    edits: Vec<JsonLabel<'a>>,
+}
+
+#[derive(Serialize)]
 struct Position {
     byte: usize,
     line: usize,
     column: usize,
+}
+
+/// The bytes of an edit, which may hold a line end.
+fn whole(text: &str, span: Span) -> Range<usize> {
+    let boundary = |byte: u32| floor_boundary(text, (byte as usize).min(text.len()));
+    boundary(span.start)..boundary(span.end)
+}
+
+/// Finds lines and columns; where lines begin is looked up once for each file.
+struct Places<'a> {
+    sources: &'a Sources,
+    lines: HashMap<&'a str, Vec<usize>>,
+}
+
+impl<'a> Places<'a> {
+    /// A text about the bytes that `bytes` makes of a span in its file.
+    fn text(&mut self, span: Span, bytes: fn(&str, Span) -> Range<usize>, text: &'a str) -> JsonLabel<'a> {
+        let (file, span) = self.sources.locate(span);
+        let lines = self.lines.entry(&file.name).or_insert_with(|| line_starts(&file.text));
+        let range = bytes(&file.text, span);
+        let start = position(&file.text, lines, range.start);
+        let end = position(&file.text, lines, range.end);
+        JsonLabel { file: &file.name, start, end, text }
+    }
 }
 
 fn line_starts(text: &str) -> Vec<usize> {
@@ -158,7 +201,7 @@ fn position(text: &str, lines: &[usize], byte: usize) -> Position {
 #[cfg(test)]
 mod tests {
     use super::{human, json};
-    use crate::diag::Diagnostic;
+    use crate::diag::{Diagnostic, Fix};
     use crate::source::{SourceFile, Span};
 
     fn shown(text: &str, start: usize, end: usize) -> String {
@@ -218,6 +261,7 @@ mod tests {
         let file = SourceFile::new("a.vol", "// é\nlet é = \"x\"\n").into();
         let first = Diagnostic::error("E0104", "a \"quoted\" word", Span::new(10, 12), "here");
         let second = Diagnostic::warning("W0101", "odd", Span::new(15, 18), "").with_help("write `a`");
+        let second = second.with_fix(Fix::remove(Span::new(5, 19)));
         let text = json(&file, &[first, second]);
         let lines: Vec<serde_json::Value> =
             text.lines().map(|line| serde_json::from_str(line).expect("each line is JSON")).collect();
@@ -232,5 +276,10 @@ mod tests {
         let end = &lines[1]["labels"][0]["end"];
         assert_eq!((&end["byte"], &end["line"], &end["column"]), (&18.into(), &2.into(), &12.into()));
         assert_eq!(lines[1]["help"], "write `a`");
+        assert_eq!(lines[0]["fixes"], serde_json::json!([]));
+        let start = serde_json::json!({"byte": 5, "line": 1, "column": 5});
+        let end = serde_json::json!({"byte": 19, "line": 3, "column": 1});
+        let edit = serde_json::json!({"file": "a.vol", "start": start, "end": end, "text": ""});
+        assert_eq!(lines[1]["fixes"], serde_json::json!([{"title": "remove it", "edits": [edit]}]));
     }
 }

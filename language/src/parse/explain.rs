@@ -1,10 +1,11 @@
 //! The parser's messages: all wording about syntax is here and in `explain/unexpected.rs`.
 
+mod repair;
 mod unexpected;
 
 use super::{MAX_DEPTH, MAX_NESTING};
 use crate::blocks::BLOCK_KINDS;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::nearest::nearest;
 use crate::source::{MAX_SOURCE_BYTES, Span};
 pub(super) use unexpected::{OPERATOR, Place, unexpected};
@@ -69,15 +70,31 @@ pub(super) fn too_long(at: Span) -> Diagnostic {
 }
 
 pub(super) fn stray_bracket(at: Span, found: &str) -> Diagnostic {
-    Diagnostic::error("E0101", format!("`{found}` closes nothing"), at, "no bracket is open here")
+    let opener = match found {
+        ")" => "(",
+        "]" => "[",
+        _ => "{",
+    };
+    Diagnostic::error("E0101", format!("`{found}` closes nothing"), at, format!("no `{opener}` is open here"))
         .with_help(format!("remove the `{found}`"))
+        .with_fix(Fix::remove(at))
 }
 
-pub(super) fn wrong_bracket(opened: Span, expected: &str, at: Span, found: &str) -> Diagnostic {
+/// `found` closes another bracket, further out, than the one at `opened`.
+pub(super) fn crossed_bracket(opened: Span, expected: &str, at: Span, found: &str) -> Diagnostic {
     let message = format!("expected `{expected}`, found `{found}`");
     Diagnostic::error("E0101", message, at, format!("`{expected}` belongs before this"))
         .with_label(opened, "the bracket that it would close")
         .with_help(format!("write `{expected}` before the `{found}`"))
+}
+
+/// `found` closes no bracket, and the one at `opened` is not closed by another.
+pub(super) fn wrong_bracket(opened: Span, expected: &str, at: Span, found: &str) -> Diagnostic {
+    let message = format!("expected `{expected}`, found `{found}`");
+    Diagnostic::error("E0101", message, at, format!("`{expected}` belongs here"))
+        .with_label(opened, "the bracket that it would close")
+        .with_help(format!("write `{expected}` instead of `{found}`"))
+        .with_fix(Fix::replace(at, expected))
 }
 
 pub(super) fn unclosed_bracket(opened: Span, expected: &str, end: Span) -> Diagnostic {
@@ -86,17 +103,28 @@ pub(super) fn unclosed_bracket(opened: Span, expected: &str, end: Span) -> Diagn
         .with_help(format!("write `{expected}` where the bracket ends"))
 }
 
-pub(super) fn unterminated_string(span: Span) -> Diagnostic {
+/// `text` is the string up to the end of its line.
+pub(super) fn unterminated_string(span: Span, text: &str) -> Diagnostic {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '"' | '_' | '-' | '.' | '/');
+    let word = text.trim_end();
+    // Behind anything but a word the end of the string is unknown.
+    let fix = word.chars().all(is_word).then(|| Fix::insert(span.start + word.len() as u32, "\""));
     Diagnostic::error("E0103", "the string has no closing quote", span, "runs to the end of the line")
         .with_help("write `\"` at its end; a line break inside a string is `\\n`")
+        .with_fix(fix)
 }
 
-pub(super) fn block_comment(span: Span) -> Diagnostic {
-    Diagnostic::error("E0104", "comments have no `/*` form", span, "not a comment here")
-        .with_help("begin each line of the comment with `//`")
+/// The comment begins at byte `at` of `text` and is `length` bytes long.
+pub(super) fn block_comment(text: &str, at: usize, length: usize) -> Diagnostic {
+    let help = "begin each line of the comment with `//`";
+    Diagnostic::error("E0104", "comments have no `/*` form", Span::new(at, at + 2), "not a comment here")
+        .with_help(help)
+        .with_fix(repair::block_comment(help, text, at, length))
 }
 
-pub(super) fn bad_character(span: Span, character: char) -> Diagnostic {
+/// The character that begins at byte `at` of `text`.
+pub(super) fn bad_character(text: &str, at: usize, character: char) -> Diagnostic {
+    let span = Span::new(at, at + character.len_utf8());
     // Marks that turn the direction of text, or have no width, would garble the line.
     let is_invisible = matches!(character, '\u{200B}'..='\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2060}'..='\u{206F}' | '\u{FEFF}');
     let message = if character.is_control() || character.is_whitespace() || is_invisible {
@@ -118,7 +146,9 @@ pub(super) fn bad_character(span: Span, character: char) -> Diagnostic {
         character if character.is_alphabetic() => "write names with the letters `a` to `z`, digits and `_`",
         _ => "remove it",
     };
-    Diagnostic::error("E0104", message, span, "not part of the language").with_help(help)
+    Diagnostic::error("E0104", message, span, "not part of the language")
+        .with_help(help)
+        .with_fix(repair::bad_character(text, span, character))
 }
 
 pub(super) fn wrong_version(span: Span, version: &str) -> Diagnostic {
@@ -126,30 +156,61 @@ pub(super) fn wrong_version(span: Span, version: &str) -> Diagnostic {
         "" => "the version of the language is missing".to_owned(),
         _ => format!("this program does not read version {} of the language", quoted(version)),
     };
-    Diagnostic::error("E0110", message, span, "only version 1 is known").with_help("write `#vol 1`")
+    Diagnostic::error("E0110", message, span, "only version 1 is known")
+        .with_help("write `#vol 1`")
+        .with_fix(Fix::replace(span, "#vol 1"))
 }
 
-pub(super) fn missing_comma(at: Span) -> Diagnostic {
+/// `end` is the end of the entry before.
+pub(super) fn missing_comma(at: Span, end: u32) -> Diagnostic {
     Diagnostic::error("E0105", "two entries share a line without a comma", at, "a new entry begins here")
         .with_help("write `,` before it, or begin a new line")
+        .with_fix(Fix::insert(end, ","))
+}
+
+/// Numbers at `others` that follow the one at `value` without brackets around them all.
+pub(super) fn loose_components(value: Span, others: Span, text: &str) -> Diagnostic {
+    let all = value.to(others);
+    let inside = text.get(all.start as usize..all.end as usize).unwrap_or_default();
+    let first = text.get(others.start as usize..others.end as usize).unwrap_or_default();
+    let first = first.split(',').next().unwrap_or_default().trim();
+    Diagnostic::error(
+        "E0102",
+        format!("expected a key, found {}", quoted(first)),
+        others,
+        "not expected here",
+    )
+    .with_help(format!("write a vector in brackets: `({inside})`"))
+    .with_fix(Fix::new(
+        "put the vector into brackets",
+        [(Span { end: all.start, ..all }, "("), (Span { start: all.end, ..all }, ")")],
+    ))
 }
 
 pub(super) fn stray_comma(at: Span) -> Diagnostic {
     Diagnostic::error("E0102", "expected an entry before `,`", at, "nothing stands before this")
         .with_help("remove the `,`")
+        .with_fix(Fix::remove(at))
 }
 
 pub(super) fn unknown_unit(at: Span, number: &str, unit: &str) -> Diagnostic {
-    let help = match unit {
-        "m" | "cm" | "mm" | "km" | "px" | "f" | "f32" => format!("lengths have no unit: write `{number}`"),
-        "d" | "degree" | "degrees" => format!("write `{number}deg`"),
-        "sec" | "second" | "seconds" => format!("write `{number}s`"),
-        "turns" | "rev" => format!("write `{number}turn`"),
-        "radians" | "radian" => format!("write `{number}rad`"),
-        _ => format!("write `{number}`, or a number with one of these units, such as `45deg`"),
+    let meant = match unit {
+        "m" | "cm" | "mm" | "km" | "px" | "f" | "f32" => Some(""),
+        "d" | "degree" | "degrees" => Some("deg"),
+        "sec" | "second" | "seconds" => Some("s"),
+        "turns" | "rev" => Some("turn"),
+        "radians" | "radian" => Some("rad"),
+        _ => None,
+    };
+    let help = match meant {
+        Some("") => format!("lengths have no unit: write `{number}`"),
+        Some(known) => format!("write `{number}{known}`"),
+        None => format!("write `{number}`, or a number with one of these units, such as `45deg`"),
     };
     let message = format!("{} is not a unit", quoted(unit));
-    Diagnostic::error("E0106", message, at, format!("the units are {UNITS}")).with_help(help)
+    Diagnostic::error("E0106", message, at, format!("the units are {UNITS}"))
+        .with_help(help)
+        .with_fix(meant.map(|known| Fix::replace(at, known)))
 }
 
 pub(super) fn suspicious_angle(at: Span, digits: &str, unit: &str, meant: &str) -> Diagnostic {
@@ -166,20 +227,30 @@ pub(super) fn number_too_large(at: Span) -> Diagnostic {
 
 pub(super) fn not_a_color(at: Span, found: &str) -> Diagnostic {
     let message = format!("{} is not a colour", quoted(found));
-    Diagnostic::error("E0108", message, at, "needs three or six hexadecimal digits")
-        .with_help("write a colour as `#rrggbb`, for example `#ff8800`")
+    let error = Diagnostic::error("E0108", message, at, "needs three or six hexadecimal digits");
+    match found.get(..7).filter(|_| found.len() == 9 && found[1..].bytes().all(|b| b.is_ascii_hexdigit())) {
+        Some(opaque) => error
+            .with_help(format!("write `{opaque}`: a colour has no transparency"))
+            .with_fix(Fix::replace(at, opaque)),
+        None => error.with_help("write a colour as `#rrggbb`, for example `#ff8800`"),
+    }
 }
 
 pub(super) fn unknown_escape(at: Span, found: &str) -> Diagnostic {
     let message = format!("{} is not an escape", quoted(found));
     Diagnostic::error("E0109", message, at, "unknown after `\\`")
         .with_help("escapes are `\\\"`, `\\\\`, `\\n`, `\\t` and `\\u{…}`; a backslash itself is `\\\\`")
+        .with_fix(Fix::insert(at.start, "\\"))
 }
 
 pub(super) fn long_tuple(at: Span, count: usize) -> Diagnostic {
     let message = format!("a vector has two to four components, this one has {count}");
     Diagnostic::error("E0112", message, at, "too many components")
         .with_help("write a list as `[a, b, c, d, e]`")
+        .with_fix(Fix::new(
+            "make it a list",
+            [(Span { end: at.start + 1, ..at }, "["), (Span { start: at.end - 1, ..at }, "]")],
+        ))
 }
 
 pub(super) fn not_a_parameter(at: Span) -> Diagnostic {
@@ -212,10 +283,12 @@ pub(super) fn not_a_range(at: Span) -> Diagnostic {
         .with_help("write the lowest and the highest value as `in 0..10`")
 }
 
-pub(super) fn expected_block(at: Span, keyword: &str, named: bool) -> Diagnostic {
+/// `stray` is a sign between the head of the block and its `{`.
+pub(super) fn expected_block(at: Span, keyword: &str, named: bool, stray: Option<Span>) -> Diagnostic {
     let form = if named { format!("{keyword} name {{ … }}") } else { format!("{keyword} {{ … }}") };
     Diagnostic::error("E0102", "expected `{`", at, format!("the {keyword}'s `{{` belongs before this"))
         .with_help(format!("write `{form}`"))
+        .with_fix(stray.map(Fix::remove))
 }
 
 pub(super) fn after_block(at: Span, found: &str) -> Diagnostic {
@@ -232,19 +305,26 @@ fn item_words() -> impl Iterator<Item = &'static str> {
 pub(super) fn unknown_item(at: Span, found: &str, next: Option<&str>) -> Diagnostic {
     let known = item_words().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ");
     let is_word = found.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
-    let help = match (next, nearest(found, item_words())) {
-        (Some("="), _) if is_word => format!("write `let {found} = …`"),
+    let (help, fix) = match (next, nearest(found, item_words())) {
+        (Some("="), _) if is_word => {
+            (format!("write `let {found} = …`"), Some(Fix::insert(at.start, "let ")))
+        }
         _ if matches!(found, "function" | "func" | "def") => {
-            "write `fn name(x: float) -> float { … }`".to_owned()
+            ("write `fn name(x: float) -> float { … }`".to_owned(), Some(Fix::replace(at, "fn")))
         }
-        _ if matches!(found, "var" | "const" | "float") => "write `let name = …`".to_owned(),
-        _ if found.starts_with('#') => "begin a comment with `//`".to_owned(),
-        (_, Some(word)) => format!("did you mean `{word}`?"),
+        _ if matches!(found, "var" | "const" | "float") => {
+            ("write `let name = …`".to_owned(), Some(Fix::replace(at, "let")))
+        }
+        _ if found.starts_with('#') => {
+            let sign = Span { end: at.start + 1, ..at };
+            ("begin a comment with `//`".to_owned(), Some(Fix::replace(sign, "//")))
+        }
+        (_, Some(word)) => (format!("did you mean `{word}`"), Some(Fix::replace(at, word))),
         (Some("("), None) if is_word => {
-            format!("write `object name {{ shape: {found}(…) }}`, or `let name = {found}(…)`")
+            (format!("write `object name {{ shape: {found}(…) }}`, or `let name = {found}(…)`"), None)
         }
-        _ => format!("items begin with {known}"),
+        _ => (format!("items begin with {known}"), None),
     };
     let message = format!("{} does not begin an item", quoted(found));
-    Diagnostic::error("E0113", message, at, "expected an item here").with_help(help)
+    Diagnostic::error("E0113", message, at, "expected an item here").with_help(help).with_fix(fix)
 }

@@ -18,6 +18,9 @@ use crate::source::Span;
 /// [`MAX_DEPTH`] will refuse the expression anyway.
 const MAX_OPERATORS: u32 = 4096;
 
+/// Most tokens that are read ahead to tell a stray bracket from a wrong one.
+const MAX_LOOKAHEAD: usize = 10_000;
+
 /// Words that begin an item.
 pub(super) fn is_item_word(word: &str) -> bool {
     matches!(word, "param" | "let" | "fn" | "import") || is_block_word(word)
@@ -128,7 +131,7 @@ impl Walk<'_> {
         match token.kind {
             Kind::Open => self.open(&token),
             Kind::Close => {
-                self.close(&token);
+                self.close(i, &scan.tokens);
                 scan.tokens[i].depth = depth(&self.frames);
             }
             Kind::Word => self.word(token.text(self.text)),
@@ -194,23 +197,50 @@ impl Walk<'_> {
         self.frames.push(Frame { span: token.span(), closer, ..Frame::default() });
     }
 
-    fn close(&mut self, token: &Token) {
-        let found = token.text(self.text);
+    fn close(&mut self, i: usize, tokens: &[Token]) {
+        let (found, span) = (tokens[i].text(self.text), tokens[i].span());
         let Some(frame) = self.frames.last() else {
-            let span = token.span();
             return self.report.add_breaking(span, || explain::stray_bracket(span, found));
         };
         let (opened, expected) = (frame.span, frame.closer);
-        if expected != found {
-            self.report.break_at(token.span());
-            self.break_bracket(opened, || explain::wrong_bracket(opened, expected, token.span(), found));
+        if expected == found {
+            return self.pop();
+        }
+        let mut near = self.frames.iter().rev().take(MAX_NESTING);
+        match near.position(|frame| frame.closer == found) {
             // The closing bracket of an outer pair also ends the pairs inside it.
-            let near = self.frames.iter().rev().take(MAX_NESTING);
-            if let Some(inner) = near.map(|frame| frame.closer).position(|closer| closer == found) {
-                (0..inner).for_each(|_| self.pop());
+            Some(inner) => {
+                self.report.break_at(span);
+                self.break_bracket(opened, || explain::crossed_bracket(opened, expected, span, found));
+                (0..=inner).for_each(|_| self.pop());
+            }
+            None if self.closes_later(expected, &tokens[i + 1..]) => {
+                self.report.add_breaking(span, || explain::stray_bracket(span, found));
+            }
+            None => {
+                self.report.break_at(span);
+                self.break_bracket(opened, || explain::wrong_bracket(opened, expected, span, found));
+                self.pop();
             }
         }
-        self.pop();
+    }
+
+    /// Whether the first bracket that closes nothing among the next tokens is the given one. Looks only
+    /// as long as the answer shows in a message, so a file full of strays is read in linear time.
+    fn closes_later(&self, closer: &str, tokens: &[Token]) -> bool {
+        if self.too_deep || self.report.is_full() {
+            return false;
+        }
+        let mut depth = 0_usize;
+        for token in tokens.iter().take(MAX_LOOKAHEAD) {
+            match token.kind {
+                Kind::Open => depth += 1,
+                Kind::Close if depth == 0 => return token.text(self.text) == closer,
+                Kind::Close => depth -= 1,
+                Kind::Word | Kind::Number | Kind::Text | Kind::Color | Kind::Symbol => {}
+            }
+        }
+        false
     }
 
     fn pop(&mut self) {

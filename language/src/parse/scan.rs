@@ -138,7 +138,7 @@ impl Scanner<'_> {
     fn block_comment(&mut self) {
         let rest = &self.text[self.at..];
         let length = rest.find("*/").map_or(rest.len(), |end| end + 2);
-        self.report.add(explain::block_comment(Span::new(self.at, self.at + 2)));
+        self.report.add(explain::block_comment(self.text, self.at, length));
         self.blank(length);
     }
 
@@ -156,7 +156,8 @@ impl Scanner<'_> {
         }
         let length = self.line_length();
         let span = Span::new(self.at, self.at + length);
-        self.report.add_breaking(span, || explain::unterminated_string(span));
+        let text = &self.text[self.at..self.at + length];
+        self.report.add_breaking(span, || explain::unterminated_string(span, text));
         self.token(Kind::Text, length);
     }
 
@@ -176,7 +177,8 @@ impl Scanner<'_> {
         let character = self.text[self.at..].chars().next().unwrap_or(' ');
         let length = character.len_utf8();
         let span = Span::new(self.at, self.at + length);
-        self.report.add_breaking(span, || explain::bad_character(span, character));
+        let (text, at) = (self.text, self.at);
+        self.report.add_breaking(span, || explain::bad_character(text, at, character));
         self.blank(length);
     }
 }

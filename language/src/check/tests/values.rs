@@ -60,7 +60,7 @@ fn fields_of_the_local_point() {
 fn unknown_field_of_the_local_point() {
     let source = "fn f(q: local) -> float { q.radus }";
     assert_eq!(errors(source), ["E0209 `radus`: no such field"]);
-    assert_eq!(help(source), "did you mean `.radius`");
+    assert_eq!(help(source), "did you mean `radius`");
 }
 
 #[test]

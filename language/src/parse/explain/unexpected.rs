@@ -1,7 +1,7 @@
 //! "expected …, found …": the grammar's dead ends in words.
 
 use super::quoted;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fix};
 use crate::parse::scan::{Kind, Token};
 use crate::source::Span;
 
@@ -40,6 +40,9 @@ pub(in crate::parse) fn unexpected(place: &Place<'_>) -> Diagnostic {
             Diagnostic::error("E0102", format!("expected {list}"), Span::new(place.offset, place.offset), "")
         }
     };
+    if let Some((help, fix)) = place.repair(index, &expected) {
+        return diagnostic.with_help(help).with_fix(fix);
+    }
     match place.help(index, &expected) {
         Some(help) => diagnostic.with_help(help),
         None => diagnostic,
@@ -155,7 +158,57 @@ impl Place<'_> {
         self.tokens.get(index).map_or("", |token| token.text(self.text))
     }
 
-    /// What to type, for the mistakes that people make.
+    /// What to type and the repair that types it, for mistakes with one.
+    fn repair(&self, index: usize, expected: &[&str]) -> Option<(&'static str, Fix)> {
+        let token = self.tokens.get(index)?;
+        let (found, span) = (self.word_at(index), token.span());
+        let wants = |word: &str| expected.contains(&word);
+        // `.5` after a value is a second point in a number, or an index.
+        let begins_value = self.begins_value(index) && !found.starts_with('.');
+        let begins_vector = found == "(" && !token.starts_line;
+        let after_operand = self.expected.contains(&OPERATOR);
+        let before = self.tokens[..index].last().map_or(span.start, |token| token.end);
+        let insert = |text: &str| Fix::insert(before, text);
+        Some(match found {
+            "=" if wants("`:`") && self.word_at(0) != "param" => {
+                ("write `:` instead of `=`", Fix::replace(span, ":"))
+            }
+            "=" if self.names_argument(index) => {
+                ("write `:` after the name of an argument, or `==` to compare", Fix::replace(span, ":"))
+            }
+            "=" if after_operand && !self.is_in_block(index) => {
+                ("write `==` to compare", Fix::replace(span, "=="))
+            }
+            "=" if wants("`in`") => ("write `[for i in 0..8: …]`", Fix::replace(span, "in")),
+            "," if wants("an expression") && !self.is_in_block(index) => {
+                ("remove the `,`, or write a value before it", Fix::remove(span))
+            }
+            ":" if wants("`=`") && self.word_at(0) == "let" => {
+                let equals = (index..self.tokens.len()).find(|&i| self.word_at(i) == "=")?;
+                let ty = Span { start: before, end: self.tokens[equals - 1].end };
+                ("a `let` states no type: write `let name = value`", Fix::remove(ty))
+            }
+            "->" if after_operand => ("write a function as `x => …`", Fix::replace(span, "=>")),
+            _ if self.word_before(index) == "return" && self.is_in_braces(index) => {
+                let word = Span { start: self.tokens[index - 1].start, end: span.start };
+                ("remove `return`: the last expression is the result", Fix::remove(word))
+            }
+            _ if wants("`then`") && begins_value => ("write `if condition then a else b`", insert(" then")),
+            _ if wants("`=`") && self.word_at(0) == "let" && begins_value => {
+                ("write `let name = value`", insert(" ="))
+            }
+            _ if wants("`:`") && self.is_in_list(index) && begins_value => {
+                ("write `:` before what each element is: `[for i in 0..8: …]`", insert(":"))
+            }
+            _ if wants("`:`") && self.unit == "entry" && index == 1 && (begins_value || begins_vector) => {
+                ("write an entry as `key: value`", insert(":"))
+            }
+            _ if wants("`,`") && begins_value => ("write `,` before it, or an operator", insert(",")),
+            _ => return None,
+        })
+    }
+
+    /// What to type, for the other mistakes that people make.
     fn help(&self, index: usize, expected: &[&str]) -> Option<String> {
         let found = self.word_at(index);
         let starts_line = self.tokens.get(index).is_some_and(|token| token.starts_line);
@@ -164,18 +217,10 @@ impl Place<'_> {
         let help = match found {
             "(" if starts_line => "write `(` on the line above to call, or `,` before it",
             "-" if starts_line => "write `-` at the end of the line above to subtract",
-            "=" if wants("`:`") && self.word_at(0) != "param" => "write `:` instead of `=`",
-            "=" if self.names_argument(index) => {
-                "write `:` after the name of an argument, or `==` to compare"
-            }
             "=" if self.is_in_block(index) => {
                 "a name keeps its value: write `let` and another name, or `==` to compare"
             }
-            "=" if self.expected.contains(&OPERATOR) => "write `==` to compare",
             "," if wants("an expression") && self.is_in_block(index) => "separate `let`s by new lines",
-            ":" if wants("`=`") && self.word_at(0) == "let" => {
-                "a `let` states no type: write `let name = value`"
-            }
             ":" if wants("`=`") => "write `name: type = value`",
             "=" if wants("`->`") => "write the type of the result: `-> float`",
             ".." => "write a range only after `in`: `[for i in 0..10: …]`",
@@ -183,21 +228,16 @@ impl Place<'_> {
                 "there is no index: write the parts of a vector as `v.x`, walk a list with `[for x in list: …]`"
             }
             "*" if wants("an expression") && self.word_before(index) == "*" => "write a power as `pow(a, b)`",
-            "," if wants("an expression") => "remove the `,`, or write a value before it",
             _ if is_number && found.starts_with('.') && self.is_number(index.wrapping_sub(1)) => {
                 "a number has one `.`"
             }
             _ if is_number && found.starts_with('.') => {
                 "write the parts of a vector as `v.x`, `v.y` and `v.z`"
             }
-            "->" => "write a function as `x => …`",
             "let" | "if" | "then" | "else" | "for" | "in" | "true" | "false" | "fn" | "param" | "import"
                 if wants("a name") || wants("a key") =>
             {
                 return Some(format!("`{found}` is a word of the language: choose another name"));
-            }
-            _ if self.word_before(index) == "return" && self.is_in_braces(index) => {
-                "remove `return`: the last expression is the result"
             }
             "for" if wants("an expression") => "write a list in brackets: `[for i in 0..8: …]`",
             "in" if wants("an expression") => "`in` is a word of the language: choose another name",
@@ -219,7 +259,6 @@ impl Place<'_> {
             "" if wants("an expression") => {
                 return Some(format!("write a value after the `{}`", self.word_before(index)));
             }
-            _ if wants("`,`") && self.begins_value(index) => "write `,` before it, or an operator",
             _ if index == 0 && is_number => "write a vector in brackets: `(1, 2, 3)`",
             _ => return None,
         };

@@ -399,7 +399,7 @@ impl<'a> Lowerer<'a> {
             if let Some(last) = entries.last() {
                 let gap = (last.value.span.end - start) as usize..(entry.key.span.start - start) as usize;
                 if !text[gap].contains([',', '\n']) {
-                    self.report(explain::missing_comma(entry.key.span));
+                    self.report(explain::missing_comma(entry.key.span, last.value.span.end));
                 }
             }
             height = height.max(below);

@@ -104,7 +104,8 @@ fn block(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Block> {
     let Some((open, rest)) = rest.split_first().filter(|(token, _)| token.text(text) == "{") else {
         if !unit.is_broken(report) {
             let at = rest.first().or(names.first()).unwrap_or(head).span();
-            report.add(explain::expected_block(at, &keyword.text, is_named(&keyword.text)));
+            let stray = (rest.get(1).is_some_and(|next| next.text(text) == "{")).then_some(at);
+            report.add(explain::expected_block(at, &keyword.text, is_named(&keyword.text), stray));
         }
         return None;
     };
@@ -130,18 +131,50 @@ fn name_of(token: &Token, text: &str) -> ast::Name {
 
 fn entries(unit: &Unit<'_>, inside: &[Token], report: &mut Report) -> Vec<ast::Entry> {
     let mut entries = Vec::new();
-    for raw in split::entries(unit.source.text, inside) {
-        if raw.tokens.is_empty() {
+    let cut = split::entries(unit.source.text, inside);
+    let mut rest = cut.as_slice();
+    let mut end = inside.first().map_or(0, |token| token.start);
+    while let [raw, after @ ..] = rest {
+        rest = after;
+        let [first, ..] = raw.tokens else {
             report.add(explain::stray_comma(raw.end));
             continue;
-        }
+        };
         let unit = Unit { source: unit.source, tokens: raw.tokens, name: "entry" };
         if raw.separator == Separator::Missing && !unit.is_broken(report) {
-            report.add(explain::missing_comma(raw.tokens[0].span()));
+            report.add(explain::missing_comma(first.span(), end));
+        }
+        end = unit.span().end;
+        let loose = loose_components(&unit, after);
+        if let Some((last, between)) = rest[..loose].split_last() {
+            let others = between.first().unwrap_or(last).tokens[0].span().to(split::cover(last.tokens));
+            let value = split::cover(&raw.tokens[2..]);
+            report.add(explain::loose_components(value, others, unit.source.text));
+            rest = &rest[loose..];
+            continue;
         }
         entries.extend(entry(&unit, report));
     }
     entries
+}
+
+/// How many of the entries after `key: number` are further numbers: the components of a vector whose
+/// brackets were forgotten.
+fn loose_components(unit: &Unit<'_>, after: &[split::RawEntry<'_>]) -> usize {
+    let text = unit.source.text;
+    let is_number = |tokens: &[Token]| match tokens {
+        [number] => number.kind == Kind::Number,
+        [sign, number] => sign.text(text) == "-" && number.kind == Kind::Number,
+        _ => false,
+    };
+    match unit.tokens {
+        [key, colon, value @ ..] if key.kind == Kind::Word && colon.text(text) == ":" && is_number(value) => {
+            let is_component =
+                |raw: &&split::RawEntry<'_>| raw.separator == Separator::Comma && is_number(raw.tokens);
+            after.iter().take_while(is_component).count()
+        }
+        _ => 0,
+    }
 }
 
 fn entry(unit: &Unit<'_>, report: &mut Report) -> Option<ast::Entry> {

@@ -90,7 +90,7 @@ fn helps_can_be_typed() {
     assert_eq!(one("camera { from = 1 }", "E0102 expected `:`, found `=`", "="), "write `:` instead of `=`");
     assert_eq!(
         one("camera { at: 1, 2, }", "E0102 expected a key, found `2`", "2"),
-        "write a vector in brackets: `(1, 2, 3)`"
+        "write a vector in brackets: `(1, 2)`"
     );
     assert_eq!(
         one("let a: int = 1", "E0102 expected `=`, found `:`", ":"),
@@ -127,6 +127,9 @@ fn helps_can_be_typed() {
 fn brackets() {
     one("let a = (1, 2]", "E0101 expected `)`, found `]`", "]");
     one("let a = 1)", "E0101 `)` closes nothing", ")");
+    one("camera { from: (0, 1)) }", "E0101 `)` closes nothing", ")");
+    one("let a = [f(1)), 2]", "E0101 `)` closes nothing", ")");
+    one("let a = [f(1))\nlet b = 1", "E0101 expected `]`, found `)`", ")");
     one("camera { from: (0, 1\n}\nlet b = 1", "E0101 expected `)`, found `}`", "}");
     one("camera {\n  fov: 40deg\n\nlight sun { color: 1 }\nlet b = 1", "E0101 `}` is missing", "{");
     assert_eq!(read("camera {\n  fov: 40deg\n\nlight sun { color: 1 }\nlet b = 1").0.len(), 2);
@@ -152,7 +155,7 @@ fn literals() {
 fn items() {
     assert_eq!(
         one("objct a { shape: 1 }", "E0113 `objct` does not begin an item", "objct"),
-        "did you mean `object`?"
+        "did you mean `object`"
     );
     assert_eq!(one("a = 5", "E0113 `a` does not begin an item", "a"), "write `let a = …`");
     one("5 + 3", "E0113 `5` does not begin an item", "5");

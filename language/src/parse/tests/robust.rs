@@ -2,6 +2,7 @@
 
 use super::{TORNADO, read, read_all};
 use crate::ast::ItemKind;
+use crate::diag::apply_all;
 use crate::diag::render::human;
 use crate::parse::{MAX_DEPTH, MAX_NESTING};
 use crate::source::SourceFile;
@@ -23,6 +24,16 @@ fn ten_thousand_brackets_are_one_error() {
     }
     assert!(!codes(&")".repeat(10_000)).is_empty());
     assert!(!codes(&"(]".repeat(10_000)).is_empty());
+}
+
+#[test]
+fn a_file_full_of_stray_brackets_is_read_quickly() {
+    let start = Instant::now();
+    for strays in [")", "(]", ") (]", "( ] )"] {
+        let text = format!("let a = {{ {} }}", strays.repeat(1_000_000));
+        assert!(codes(&text).len() > 1, "{strays}");
+    }
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
 
 #[test]
@@ -196,6 +207,10 @@ fn mutated_scenes_never_panic() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         let (_, diagnostics) = read(&text);
+        for fix in diagnostics.iter().flat_map(|diagnostic| &diagnostic.fixes) {
+            assert_eq!(apply_all(&text, [fix]).1, 1, "{fix:?} is no repair of {text:?}");
+            let _ = read(&fix.apply(&text));
+        }
         let _ = human(&SourceFile::new("fuzz.vol", text).into(), &diagnostics, case % 2 == 0);
     }
 }

@@ -30,10 +30,10 @@ fn ten_thousand_brackets_are_one_error() {
 fn a_file_full_of_stray_brackets_is_read_quickly() {
     let start = Instant::now();
     for strays in [")", "(]", ") (]", "( ] )"] {
-        let text = format!("let a = {{ {} }}", strays.repeat(1_000_000));
+        let text = format!("let a = {{ {} }}", strays.repeat(200_000));
         assert!(codes(&text).len() > 1, "{strays}");
     }
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn a_megabyte_of_scene_is_read_in_seconds() {
     let text = big_scene(1 << 20);
     let start = Instant::now();
     assert!(read_all(&text).len() > 1000);
-    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
 }
 
 /// Valid items until the text has at least this size.

@@ -5,9 +5,9 @@
 //! ```` ```vol after ````. A first one that says `text` instead of `vol` is a sketch of a scene that
 //! would be too long to show.
 
-use vol_compiler::lower;
+use vol_compiler::{lints, lower};
 use vol_language::nearest::nearest;
-use vol_language::{check, parse};
+use vol_language::{check, module, parse};
 
 /// The texts of these codes, in this order.
 macro_rules! texts {
@@ -18,14 +18,16 @@ macro_rules! texts {
 
 /// The text of every code, sorted.
 #[rustfmt::skip]
-const TEXTS: [(&str, &str); 76] = texts![
+const TEXTS: [(&str, &str); 90] = texts![
     "E0100", "E0101", "E0102", "E0103", "E0104", "E0105", "E0106", "E0107", "E0108", "E0109", "E0110",
-    "E0111", "E0112", "E0113", "E0114", "E0115", "E0201", "E0202", "E0203", "E0204", "E0205", "E0206",
-    "E0207", "E0208", "E0209", "E0210", "E0211", "E0212", "E0213", "E0214", "E0215", "E0216", "E0217",
-    "E0218", "E0219", "E0220", "E0221", "E0222", "E0223", "E0224", "E0225", "E0226", "E0227", "E0228",
-    "E0229", "E0230", "E0231", "E0232", "E0301", "E0302", "E0303", "E0304", "E0305", "E0306", "E0307",
-    "E0308", "E0309", "E0310", "E0311", "E0312", "E0313", "E0314", "E0315", "E0401", "E0402", "E0403",
-    "E0404", "E0405", "E0406", "E0407", "E0408", "E0501", "W0101", "W0102", "W0103", "W0104",
+    "E0111", "E0112", "E0113", "E0115", "E0201", "E0202", "E0203", "E0204", "E0205", "E0206", "E0207",
+    "E0208", "E0209", "E0210", "E0211", "E0212", "E0213", "E0214", "E0215", "E0216", "E0217", "E0218",
+    "E0219", "E0220", "E0221", "E0222", "E0223", "E0224", "E0225", "E0226", "E0227", "E0228", "E0229",
+    "E0230", "E0231", "E0232", "E0233", "E0234", "E0235", "E0236", "E0301", "E0302", "E0303", "E0304",
+    "E0305", "E0306", "E0307", "E0308", "E0309", "E0310", "E0311", "E0312", "E0313", "E0314", "E0315",
+    "E0316", "E0401", "E0402", "E0403", "E0404", "E0405", "E0406", "E0407", "E0408", "E0501", "E0601",
+    "E0602", "E0603", "E0604", "E0605", "E0606", "W0101", "W0102", "W0103", "W0104", "W0110", "W0401",
+    "W0402", "W0403",
 ];
 
 /// What there is to say about a code.
@@ -42,7 +44,7 @@ pub struct Story {
 /// The codes of all stages with their meanings, sorted.
 #[must_use]
 pub fn codes() -> Vec<(&'static str, &'static str)> {
-    let stages = [parse::explain::CODES, check::CODES, lower::CODES];
+    let stages = [parse::explain::CODES, module::CODES, check::CODES, lower::CODES, lints::CODES];
     let mut codes: Vec<_> = stages.into_iter().flatten().copied().collect();
     codes.sort_unstable();
     codes

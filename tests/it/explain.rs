@@ -1,6 +1,6 @@
 //! The stories of `vol explain`: every code has one, and their scenes do what they say.
 
-use crate::support::{diagnose, ensure, ensure_page};
+use crate::support::{Diagnosed, diagnose, ensure, ensure_page};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::explain::{Story, codes, codes_with_text, story};
@@ -9,6 +9,12 @@ use vol_language::source::{MAX_SOURCE_BYTES, SourceFile};
 /// Codes without scenes: in a text the parser is first to notice a range or a kind of block that does
 /// not belong where it stands.
 const WITHOUT_SCENES: [&str; 2] = ["E0221", "E0301"];
+
+/// Codes whose first scene is many files; the tests of `language/src/module.rs` have them.
+const OF_MANY_FILES: [&str; 1] = ["E0604"];
+
+/// Codes whose second scene has a loop, which is checked but not compiled yet.
+const WAIT_FOR_LOOPS: [&str; 2] = ["E0234", "E0235"];
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -57,20 +63,36 @@ fn scenes(story: &Story) -> Result<(), Failed> {
     if WITHOUT_SCENES.contains(&code) {
         return ensure((story.before(), story.after()) == (None, None), || format!("{code} has scenes"));
     }
+    if !OF_MANY_FILES.contains(&code) {
+        has_mistake(story)?;
+    }
+    has_none(story)
+}
+
+fn has_mistake(story: &Story) -> Result<(), Failed> {
+    let code = story.code;
     let before = match (story.before(), long_scene(code)) {
         (Some(shown), None) => shown.to_owned(),
         (None, Some(long)) => long,
         (None, None) => return Err("there is no scene with the mistake".into()),
         (Some(_), Some(_)) => return Err("the scene is shown, but another one is tested".into()),
     };
-    let (_, found) = diagnose(&SourceFile::new("before.vol", before));
+    let found = diagnose(SourceFile::new("before.vol", before)).diagnostics;
     let found: Vec<&str> = found.iter().map(|diagnostic| diagnostic.code).collect();
     ensure(!found.is_empty() && found.iter().all(|found| *found == code || is_flood(code, found)), || {
         format!("the scene before gives {found:?}")
     })?;
-    ensure(found.contains(&code), || format!("the scene before gives {found:?}"))?;
+    ensure(found.contains(&code), || format!("the scene before gives {found:?}"))
+}
+
+fn has_none(story: &Story) -> Result<(), Failed> {
+    let code = story.code;
     let after = story.after().ok_or("there is no scene after")?;
-    let (program, found) = diagnose(&SourceFile::new("after.vol", after));
+    let Diagnosed { program, diagnostics: found, .. } = diagnose(SourceFile::new("after.vol", after));
+    if WAIT_FOR_LOOPS.contains(&code) {
+        let is_loop = found.iter().all(|found| found.message == "loops cannot be compiled yet");
+        return ensure(is_loop && !found.is_empty(), || format!("the scene after gives {found:#?}"));
+    }
     ensure(program.is_some() && found.is_empty(), || format!("the scene after gives {found:#?}"))
 }
 

@@ -1,11 +1,11 @@
 //! Repairs: each one of the scenes of `tests/ui`, made, does away with its message and brings no
 //! new error.
 
-use crate::support::{diagnose, ensure, scenes_in};
+use crate::support::{Diagnosed, diagnose, ensure, scenes_in};
 use libtest_mimic::{Failed, Trial};
 use std::path::{Path, PathBuf};
 use vol_language::diag::{Diagnostic, Fix};
-use vol_language::source::SourceFile;
+use vol_language::source::{SourceFile, Sources};
 
 /// Scenes of which a repair uncovers another error, with the reason.
 const UNCOVERS: [(&str, &str); 2] = [
@@ -30,13 +30,18 @@ fn read(path: &Path) -> Result<SourceFile, Failed> {
 
 fn check_scene(name: &str, path: &Path) -> Result<(), Failed> {
     let file = read(path)?;
-    let (_, before) = diagnose(&file);
+    let Diagnosed { diagnostics: before, sources, .. } = diagnose(file.clone());
     for diagnostic in &before {
-        for fix in &diagnostic.fixes {
+        for fix in diagnostic.fixes.iter().filter(|fix| is_in_scene(fix, &sources)) {
             check_fix(name, &file, &before, diagnostic, fix)?;
         }
     }
     Ok(())
+}
+
+/// Whether a repair is one of the scene's own file, not of one that it imports.
+fn is_in_scene(fix: &Fix, sources: &Sources) -> bool {
+    fix.edits.iter().all(|edit| std::ptr::eq(sources.locate(edit.span).0, sources.root()))
 }
 
 fn check_fix(
@@ -47,7 +52,7 @@ fn check_fix(
     fix: &Fix,
 ) -> Result<(), Failed> {
     let repaired = SourceFile::new("scene.vol", fix.apply(&file.text));
-    let (_, after) = diagnose(&repaired);
+    let after = diagnose(repaired.clone()).diagnostics;
     let place = |diagnostic: &Diagnostic| diagnostic.labels.first().map(|label| label.span.start);
     let moved = place(diagnostic).map(|start| after_edits(start, fix));
     let is_same = |found: &Diagnostic| {
@@ -73,7 +78,7 @@ fn after_edits(place: u32, fix: &Fix) -> u32 {
 fn there_are_fixes() -> Result<(), Failed> {
     let mut count = 0;
     for (_, path) in scenes_in("tests/ui") {
-        let (_, found) = diagnose(&read(&path)?);
+        let found = diagnose(read(&path)?).diagnostics;
         count += found.iter().map(|diagnostic| diagnostic.fixes.len()).sum::<usize>();
     }
     ensure(count >= 80, || format!("only {count} repairs"))

@@ -136,7 +136,14 @@ impl Place<'_> {
         index >= 2
             && self.tokens[index - 1].kind == Kind::Word
             && matches!(self.word_at(index - 2), "(" | ",")
-            && self.open_bracket(index).is_some_and(|open| self.word_at(open) == "(")
+            && self.open_bracket(index).is_some_and(|open| self.word_at(open) == "(" && self.is_call(open))
+    }
+
+    /// Whether a bracket follows the name of a function, not the steps of a loop.
+    fn is_call(&self, open: usize) -> bool {
+        let is_word = |index: usize| self.tokens.get(index).is_some_and(|token| token.kind == Kind::Word);
+        let before = |back: usize| open.checked_sub(back);
+        before(1).is_some_and(is_word) && before(2).is_none_or(|index| self.word_at(index) != "iterate")
     }
 
     fn is_number(&self, index: usize) -> bool {

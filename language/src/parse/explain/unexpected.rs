@@ -136,14 +136,13 @@ impl Place<'_> {
         index >= 2
             && self.tokens[index - 1].kind == Kind::Word
             && matches!(self.word_at(index - 2), "(" | ",")
-            && self.open_bracket(index).is_some_and(|open| self.word_at(open) == "(" && self.is_call(open))
+            && self.open_bracket(index).is_some_and(|open| self.word_at(open) == "(")
     }
 
-    /// Whether a bracket follows the name of a function, not the steps of a loop.
-    fn is_call(&self, open: usize) -> bool {
-        let is_word = |index: usize| self.tokens.get(index).is_some_and(|token| token.kind == Kind::Word);
-        let before = |back: usize| open.checked_sub(back);
-        before(1).is_some_and(is_word) && before(2).is_none_or(|index| self.word_at(index) != "iterate")
+    /// The bracket around the place if it follows the number of steps of a loop.
+    fn state_without_from(&self, index: usize) -> Option<usize> {
+        let open = self.open_bracket(index)?;
+        (self.word_at(open) == "(" && self.word_at(open.checked_sub(2)?) == "iterate").then_some(open)
     }
 
     fn is_number(&self, index: usize) -> bool {
@@ -176,6 +175,10 @@ impl Place<'_> {
         let after_operand = self.expected.contains(&OPERATOR);
         let before = self.tokens[..index].last().map_or(span.start, |token| token.end);
         let insert = |text: &str| Fix::insert(before, text);
+        if let Some(open) = self.state_without_from(index).filter(|_| found == "=") {
+            let fix = Fix::insert(self.tokens[open - 1].end, " from");
+            return Some(("write `from` before the first values: `iterate 8 from (z = 1): …`", fix));
+        }
         Some(match found {
             "=" if wants("`:`") && self.word_at(0) != "param" => {
                 ("write `:` instead of `=`", Fix::replace(span, ":"))

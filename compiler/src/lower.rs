@@ -81,6 +81,8 @@ pub(crate) struct Lowerer<'a> {
     /// Values of the bindings in scope.
     environment: Environment,
     lets: Vec<Option<Lowered<Value>>>,
+    /// Arguments of the built-in function that is being called, for messages about one of them.
+    arguments: &'a [hir::ExprId],
     /// First frame input of each param.
     param_inputs: Vec<u32>,
     frame_inputs: u32,
@@ -106,6 +108,7 @@ impl<'a> Lowerer<'a> {
             curves: Vec::new(),
             environment: Environment::new(hir.local_count),
             lets: vec![None; hir.lets.len()],
+            arguments: &[],
             param_inputs,
             frame_inputs,
             unrolled: 0,
@@ -120,6 +123,12 @@ impl<'a> Lowerer<'a> {
         if !self.diagnostics.contains(&diagnostic) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// The place of an argument of the built-in function that is being called; for an argument that is
+    /// left out that of the call.
+    pub(crate) fn argument_span(&self, index: usize, call: Span) -> Span {
+        self.arguments.get(index).map_or(call, |&id| self.hir.expr(id).span)
     }
 
     /// The position as the first three arguments of a function.

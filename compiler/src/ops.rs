@@ -23,6 +23,7 @@ use crate::ir::graph::Graph;
 use interval::Interval;
 
 pub(crate) use error::{from_f32, settle};
+pub(crate) use noise::OCTAVES as MAX_OCTAVES;
 
 /// Most results that an operation has.
 pub const MAX_RESULTS: usize = 8;

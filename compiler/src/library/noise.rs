@@ -5,7 +5,7 @@ use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 use crate::lower::value::Value;
 use crate::lower::{Lowered, Lowerer};
-use crate::ops::Op;
+use crate::ops::{MAX_OCTAVES, Op};
 use crate::reference::noise;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vol_language::diag::Diagnostic;
@@ -99,12 +99,17 @@ fn single() -> Vec<Builtin> {
 
 /// A noise of a position with a seed.
 fn one(lowerer: &mut Lowerer<'_>, span: Span, op: Op, args: &[Value]) -> Lowered<Value> {
-    let seed = seed(lowerer, &args[1], span)?;
+    let seed = seed(lowerer, args, 1, span)?;
     Ok(Value::Numbers(vec![lowerer.graph.apply_data(op, seed, args[0].numbers())]))
 }
 
 fn fbm(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
-    let seed = seed(lowerer, &args[4], span)?;
+    let seed = seed(lowerer, args, 4, span)?;
+    let too_many = |octaves| octaves > MAX_OCTAVES;
+    let (message, help) =
+        ("`fbm` adds at most 32 octaves", "write 32 or fewer: further octaves are too fine to see");
+    let place = lowerer.argument_span(1, span);
+    lowerer.refuse_with_help(args[1].numbers(), too_many, message, place, help)?;
     let operands: Vec<ValueId> = args[..4].iter().flat_map(|arg| arg.numbers().iter().copied()).collect();
     Ok(Value::Numbers(vec![lowerer.graph.apply_data(Op::Fbm, seed, &operands)]))
 }
@@ -126,7 +131,7 @@ fn random_numbers() -> Vec<Builtin> {
             Type::Float,
             "random number that belongs to the whole part of i and to the seed, 0 to below 1",
             |lowerer, span, args| {
-                let seed = seed(lowerer, &args[1], span)?;
+                let seed = seed(lowerer, args, 1, span)?;
                 Ok(hash(&mut lowerer.graph, args[0].numbers(), seed))
             },
         ));
@@ -143,7 +148,7 @@ fn hash(graph: &mut Graph, components: &[ValueId], seed: u32) -> Value {
 
 /// Curl of a vector potential of three Perlin noises, from their exact gradients.
 fn curl(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
-    let seed = seed(lowerer, &args[1], span)?;
+    let seed = seed(lowerer, args, 1, span)?;
     let graph = &mut lowerer.graph;
     // Three seeds that no other seed of this function has.
     let gradients = [1, 2, 3].map(|component| {
@@ -169,13 +174,16 @@ const FALL: f64 = 0.707;
 /// * source: G. Gardner, "Visual Simulation of Clouds", SIGGRAPH 1985; as in C. Robles et al., "Procedural
 ///   Rendering with Ray Marching" (2022), §4.1, where the index of the frequency in `PY_i` is misprinted
 fn gardner(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
-    let terms = lowerer.compile_time(args[1].scalar(), "a number of terms", span)?;
+    let place = lowerer.argument_span(1, span);
+    let terms = lowerer.compile_time(args[1].scalar(), "a number of terms", place)?;
     if !(1.0..=TERMS).contains(&terms) {
         let label = format!("here it is {terms}");
         let message = "the number of terms must be from 1 to 7";
-        return Err(Box::new(Diagnostic::error("E0407", message, span, label).with_help("write `terms: 5`")));
+        return Err(Box::new(
+            Diagnostic::error("E0407", message, place, label).with_help("write `terms: 5`"),
+        ));
     }
-    let seed = seed(lowerer, &args[3], span)?;
+    let seed = seed(lowerer, args, 3, span)?;
     let graph = &mut lowerer.graph;
     let [x, y, z] = args[0].vec3();
     let contrast = args[2].scalar();
@@ -221,8 +229,10 @@ fn waves(graph: &mut Graph, [along, across, z]: [ValueId; 3], terms: i32, axis: 
     sum
 }
 
-fn seed(lowerer: &Lowerer<'_>, value: &Value, span: Span) -> Lowered<u32> {
-    let number = lowerer.compile_time(value.scalar(), "a seed", span)?;
+/// The seed at `index` of the arguments of a call.
+fn seed(lowerer: &Lowerer<'_>, args: &[Value], index: usize, call: Span) -> Lowered<u32> {
+    let place = lowerer.argument_span(index, call);
+    let number = lowerer.compile_time(args[index].scalar(), "a seed", place)?;
     // Negative seeds are as good as others: whole numbers to their two's complement.
     Ok(number as i64 as u32)
 }

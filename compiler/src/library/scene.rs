@@ -112,7 +112,8 @@ fn tube_builtin() -> Builtin {
     let doc = "tube around a curve with flat ends; radius and twist are numbers or functions of t (0 to 1) or (t, l); \
                local coordinates are (x / radius, l, y / radius), with stretch l / length in the middle";
     call("tube", params, Type::Shape, doc, |lowerer, span, a| {
-        let stretch = lowerer.compile_time(a[3].scalar(), "`stretch`", span)? != 0.0;
+        let stretch =
+            lowerer.compile_time(a[3].scalar(), "`stretch`", lowerer.argument_span(3, span))? != 0.0;
         let (radius, twist) = (a[1].function(), a[2].function());
         Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, lowerer, span)
     })
@@ -221,11 +222,9 @@ fn transforms() -> Vec<Builtin> {
             Type::Shape,
             "the surface moved inwards by an amount that depends on the position; marched safely by the amount's own slope",
             |lowerer, span, a| {
-                Shape::value(
-                    Kind::Displaced { child: a[0].shape(), amount: a[1].function(), span },
-                    lowerer,
-                    span,
-                )
+                let (child, amount) = (a[0].shape(), a[1].function());
+                let amount_span = lowerer.argument_span(1, span);
+                Shape::value(Kind::Displaced { child, amount, span: amount_span }, lowerer, span)
             },
         ),
     ]

@@ -75,8 +75,11 @@ impl Lowerer<'_> {
                 self.user_function(function.index(), args, expr.span)?
             }
             ExprKind::CallBuiltin(builtin, args) => {
-                let args = self.all(args)?;
-                crate::library::lower(self, *builtin, expr.span, &args)?
+                let values = self.all(args)?;
+                let outer = std::mem::replace(&mut self.arguments, args);
+                let value = crate::library::lower(self, *builtin, expr.span, &values);
+                self.arguments = outer;
+                value?
             }
             ExprKind::CallValue(callee, args) => {
                 let callee = self.expr(*callee)?.function();
@@ -274,10 +277,23 @@ impl Lowerer<'_> {
         message: &str,
         span: Span,
     ) -> Lowered<()> {
+        let help = "change the number, or leave the shape out with the key `when`";
+        self.refuse_with_help(values, wrong, message, span, help)
+    }
+
+    /// As [`Self::refuse`], with a help line of its own.
+    pub(crate) fn refuse_with_help(
+        &self,
+        values: &[ValueId],
+        wrong: fn(f64) -> bool,
+        message: &str,
+        span: Span,
+        help: &str,
+    ) -> Lowered<()> {
         let mut known = values.iter().filter_map(|&value| self.graph.constant(value));
         let Some(number) = known.find(|&number| wrong(number)) else { return Ok(()) };
         let diagnostic = Diagnostic::error("E0407", message, span, format!("here it is {number}"));
-        Err(Box::new(diagnostic.with_help("change the number, or leave the shape out with the key `when`")))
+        Err(Box::new(diagnostic.with_help(help)))
     }
 
     fn user_function(&mut self, index: usize, args: Vec<Value>, span: Span) -> Lowered<Value> {

@@ -40,7 +40,7 @@ const OCTAVE: Smooth = Smooth {
 /// The position is held within ± this.
 const FIELD: f64 = 4_194_303.0;
 /// Most octaves of a sum.
-const OCTAVES: f64 = 32.0;
+pub(crate) const OCTAVES: f64 = 32.0;
 /// Factors of amplitude and frequency are held within ± this in f32, but not in the meaning.
 const PRODUCT: f64 = 1_099_511_627_776.0;
 

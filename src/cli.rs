@@ -99,6 +99,10 @@ pub(crate) struct Check {
     /// The scene scripts
     #[arg(required = true, value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
+    /// First repair in place each error for which there is exactly one repair; imported files stay
+    /// as they are
+    #[arg(long)]
+    pub(crate) fix: bool,
     /// `human` writes to stderr, `json` to stdout
     #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
     pub(crate) message_format: MessageFormat,

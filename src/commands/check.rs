@@ -4,10 +4,11 @@ use std::io::{self, Write as _};
 use std::path::Path;
 
 use vol::failure::Failure;
+use vol::output::atomic;
 use vol::session::{self, Session};
 use vol_compiler::lints;
 use vol_compiler::program::Program;
-use vol_language::diag::{self, Diagnostic};
+use vol_language::diag::{self, Diagnostic, Fix, apply_all};
 use vol_language::source::Sources;
 
 use crate::cli::{self, MessageFormat};
@@ -16,7 +17,8 @@ use crate::cli::{self, MessageFormat};
 pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
     let mut worst = 0;
     for path in &arguments.scenes {
-        match check(path, arguments.message_format) {
+        let repaired = if arguments.fix { repair(path) } else { Ok(()) };
+        match repaired.and_then(|()| check(path, arguments.message_format)) {
             Ok(()) => {}
             Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
             Err(failure) => {
@@ -26,6 +28,28 @@ pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
         }
     }
     if worst == 0 { Ok(()) } else { Err(Failure::Reported(worst)) }
+}
+
+/// Makes the repairs of errors in the scene's own file. Warnings are left to the author: an unused name
+/// may well be the wrong one of two.
+fn repair(path: &Path) -> Result<(), Failure> {
+    let Err(Failure::Scene { sources, diagnostics }) = session::load(path).and_then(with_first_frame) else {
+        return Ok(());
+    };
+    let root = sources.root();
+    let is_in_root =
+        |fix: &&Fix| fix.edits.iter().all(|edit| std::ptr::eq(sources.locate(edit.span).0, root));
+    let only = |diagnostic: &'_ Diagnostic| match &diagnostic.fixes[..] {
+        [fix] if diagnostic.is_error() => Some(fix.clone()),
+        _ => None,
+    };
+    let fixes: Vec<Fix> = diagnostics.iter().filter_map(only).filter(|fix| is_in_root(&fix)).collect();
+    let (text, count) = apply_all(&root.text, &fixes);
+    if count > 0 {
+        atomic::write(path, |out| out.write_all(text.as_bytes()))?;
+        super::print_line(&format!("{}: {}", path.display(), counted(count, "repair", "repairs")));
+    }
+    Ok(())
 }
 
 fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {

@@ -219,7 +219,7 @@ impl Session {
     /// Frames per second, as the scene says at its start.
     fn fps(&self, params: &[Vec<f64>]) -> Result<f64, Failure> {
         let Slot(slot) = self.program.render.fps;
-        let inputs: Vec<f64> = [0.0, 0.0].into_iter().chain(params.iter().flatten().copied()).collect();
+        let inputs = self.program.frame_inputs(params, 0.0, 0.0);
         let numbers = reference::evaluate(&self.program.module.frame, &inputs, &[], &[]);
         let fps = numbers[slot as usize];
         if fps > 0.0 && fps.is_finite() {

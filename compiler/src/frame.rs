@@ -193,9 +193,8 @@ impl Program {
         number: f64,
         size: [u32; 2],
     ) -> Result<Frame, Diagnostic> {
-        let mut inputs = vec![time, number];
-        inputs.extend(params.iter().flatten());
-        let uniforms = reference::evaluate(&self.module.frame, &inputs, &[], &[]);
+        let inputs = self.frame_inputs(params, time, number);
+        let uniforms = self.uniforms(inputs)?;
         let at = |slot: Slot| uniforms[slot.0 as usize];
         let at3 = |slots: Slot3| slots.map(at);
         let on = |slot: Slot| at(slot) != 0.0;
@@ -247,6 +246,26 @@ impl Program {
             media,
             lights,
         })
+    }
+}
+
+impl Program {
+    /// Outputs of the frame function once the measures are among its inputs.
+    fn uniforms(&self, mut inputs: Vec<f64>) -> Result<Vec<f64>, Diagnostic> {
+        let uniforms = reference::evaluate(&self.module.frame, &inputs, &[], &[]);
+        if self.measures.is_empty() {
+            return Ok(uniforms);
+        }
+        let at3 = |slots: Slot3| slots.map(|slot| uniforms[slot.0 as usize]);
+        let curves: Vec<Vec<Quadratic>> =
+            self.curves.iter().map(|curve| control_points(curve, at3)).collect();
+        let tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
+        let space = Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &tables };
+        for (first, measure) in &self.measures {
+            let numbers = space.measure(measure)?;
+            inputs[*first as usize..][..numbers.len()].copy_from_slice(&numbers);
+        }
+        Ok(reference::evaluate(&self.module.frame, &inputs, &[], &[]))
     }
 }
 

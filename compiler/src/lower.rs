@@ -22,7 +22,7 @@ pub(crate) mod value;
 
 use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
-use crate::program::{Curve, Program, Slot, Slot3};
+use crate::program::{Curve, Measure, Program, Slot, Slot3};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
 use vol_language::hir;
@@ -44,7 +44,8 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0406", "a local coordinate that this region does not have"),
     ("E0407", "a number outside of what a function takes"),
     ("E0408", "a surface without a slope: a tube as an object"),
-    ("E0501", "a displacement is not bounded"),
+    ("E0501", "the steepness of a shape is not bounded"),
+    ("E0502", "a repeated shape reaches further than the copies that are asked"),
     ("W0401", "a style does not change pictures yet"),
 ];
 
@@ -78,6 +79,7 @@ pub(crate) struct Lowerer<'a> {
     slots: Slots,
     functions: Vec<Function>,
     curves: Vec<Curve>,
+    measures: Vec<(u32, Measure)>,
     /// Values of the bindings in scope.
     environment: Environment,
     lets: Vec<Option<Lowered<Value>>>,
@@ -106,6 +108,7 @@ impl<'a> Lowerer<'a> {
             slots: Slots::default(),
             functions: Vec::new(),
             curves: Vec::new(),
+            measures: Vec::new(),
             environment: Environment::new(hir.local_count),
             lets: vec![None; hir.lets.len()],
             arguments: &[],
@@ -174,6 +177,14 @@ impl<'a> Lowerer<'a> {
         self.curves.len() as u32 - 1
     }
 
+    /// The numbers of a measure, as inputs of the frame function after the params.
+    pub(crate) fn measure(&mut self, measure: Measure) -> Vec<ValueId> {
+        let (first, width) = (self.frame_inputs, measure.width());
+        self.frame_inputs += width;
+        self.measures.push((first, measure));
+        (first..first + width).map(|input| self.graph.frame_input(input)).collect()
+    }
+
     /// Cuts out the frame function and cleans up all functions.
     fn finish(&mut self, plan: scene::Plan) -> Program {
         let frame = self.slots.frame_function(&mut self.graph, self.frame_inputs);
@@ -192,6 +203,7 @@ impl<'a> Lowerer<'a> {
         Program {
             params: params.collect(),
             curves: std::mem::take(&mut self.curves),
+            measures: std::mem::take(&mut self.measures),
             objects: plan.objects,
             media: plan.media,
             lights: plan.lights,

@@ -28,6 +28,9 @@ pub struct Program {
     pub params: Vec<Param>,
     /// Curves by index; data of [`crate::ops::Op::Closest`].
     pub curves: Vec<Curve>,
+    /// Numbers of shapes that enter the frame function, with the first input that each sets. They
+    /// depend on none of one another.
+    pub measures: Vec<(u32, Measure)>,
     /// Solids.
     pub objects: Vec<Object>,
     /// Participating media.
@@ -225,6 +228,53 @@ pub enum Extent {
     },
     /// Grown on all sides by a distance.
     Grown(Box<Extent>, Slot),
+    /// Pulled apart along each axis.
+    Elongated {
+        /// The shape before.
+        child: Box<Extent>,
+        /// By how much to either side.
+        by: Slot3,
+    },
+    /// Turned about the y axis in proportion to y.
+    Twisted {
+        /// The shape before.
+        child: Box<Extent>,
+        /// Radians per unit of length.
+        rate: Slot,
+        /// The call, for messages.
+        span: Span,
+    },
+    /// Copies along the axes, centred at the origin.
+    Repeated {
+        /// One copy.
+        child: Box<Extent>,
+        /// Copies along each axis.
+        axes: [Option<Run>; 3],
+        /// Into how many further cells on each side a copy may reach.
+        overlap: u32,
+        /// The call, for messages.
+        span: Span,
+    },
+    /// Copies around the y axis, the first as the child is.
+    Around {
+        /// One copy.
+        child: Box<Extent>,
+        /// How many.
+        count: u32,
+        /// Into how many further sectors on each side a copy may reach.
+        overlap: u32,
+        /// The call, for messages.
+        span: Span,
+    },
+    /// A box at the origin, as steep as a field is in it.
+    Field {
+        /// Half extents.
+        half: Slot3,
+        /// Position to gradient of the field: 3 inputs, 3 outputs.
+        slope: FunctionId,
+        /// The call, for messages.
+        span: Span,
+    },
     /// Grown by the largest |amount| and steeper by the largest slope of the amount over the box.
     Displaced {
         /// The shape before displacement.
@@ -236,4 +286,47 @@ pub enum Extent {
         /// The displacement expression, for messages.
         span: Span,
     },
+}
+
+/// Copies along an axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    /// From copy to copy; positive.
+    pub period: Slot,
+    /// How many; 0 without end.
+    pub count: u32,
+}
+
+/// Numbers of a shape's bounds that enter the frame function, for shapes whose distance is made of
+/// those of another.
+#[derive(Clone, Debug)]
+pub enum Measure {
+    /// Largest distance of the box from the y axis: one number.
+    Radius(Extent),
+    /// Centre and half extents of the box: six numbers.
+    Box(Extent),
+}
+
+impl Measure {
+    /// How many numbers it is.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        match self {
+            Self::Radius(_) => 1,
+            Self::Box(_) => 6,
+        }
+    }
+}
+
+impl Program {
+    /// Inputs of the frame function, measures not yet known and 0: time in seconds, number of the
+    /// frame, params (one list of components each, in order), measures.
+    #[must_use]
+    pub fn frame_inputs(&self, params: &[Vec<f64>], time: f64, number: f64) -> Vec<f64> {
+        let mut inputs = vec![time, number];
+        inputs.extend(params.iter().flatten());
+        let measures: u32 = self.measures.iter().map(|(_, measure)| measure.width()).sum();
+        inputs.extend((0..measures).map(|_| 0.0));
+        inputs
+    }
 }

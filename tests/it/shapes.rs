@@ -2,6 +2,7 @@
 
 use crate::support::{compile, ensure, frame};
 use libtest_mimic::{Failed, Trial};
+use std::f64::consts::SQRT_2;
 
 /// Shape, point, signed distance.
 const CASES: &[(&str, [f64; 3], f64)] = &[
@@ -43,6 +44,56 @@ const CASES: &[(&str, [f64; 3], f64)] = &[
     ("sphere(1).scale(3)", [5.0, 0.0, 0.0], 2.0),
     ("box((1, 1, 1)).round(0.5)", [3.0, 0.0, 0.0], 1.5),
     ("sphere(1).displace(p => 0.25)", [3.0, 0.0, 0.0], 2.25),
+    ("cone(3, 2)", [0.0, 4.0, 0.0], 2.0),
+    ("cone(3, 2)", [5.0, -2.0, 0.0], 2.0),
+    ("cone(3, 2)", [0.0, -1.75, 0.0], -0.25),
+    ("cone(1, 2, top: 1)", [0.0, 0.0, 3.0], 2.0),
+    ("cone(0, 0)", [3.0, 4.0, 0.0], 5.0),
+    ("cone(1, 0)", [0.0, 2.0, 0.0], 2.0),
+    ("cone(1, 0, top: 1)", [3.0, 0.0, 0.0], 2.0),
+    ("prism(4, 2, 1)", [0.0, 3.0, 0.0], 2.0),
+    ("prism(4, 2, 1)", [5.0, 0.0, 0.0], 3.0),
+    ("prism(3, 2, 3)", [-3.0, 0.0, 0.0], 2.0),
+    ("prism(6, 0, 0)", [0.0, 3.0, 4.0], 5.0),
+    ("pyramid(1, 2)", [0.0, 5.0, 0.0], 3.0),
+    ("pyramid(1, 2)", [0.0, -4.0, 0.0], 2.0),
+    ("pyramid(0, 0)", [3.0, 4.0, 0.0], 5.0),
+    ("pyramid(1, 0)", [0.0, 2.0, 0.0], 2.0),
+    ("octahedron(2)", [5.0, 0.0, 0.0], 3.0),
+    ("octahedron(0)", [0.0, 4.0, 3.0], 5.0),
+    ("disk(3, thickness: 0.5)", [0.0, 2.0, 0.0], 1.75),
+    ("disk(3, thickness: 0.5)", [6.0, 4.0, 0.0], 4.75),
+    ("ellipsoid((1, 2, 3))", [4.0, 0.0, 0.0], 3.0),
+    ("ellipsoid((1, 2, 3))", [0.0, 0.0, 0.0], -1.0),
+    // A bevel of 0.4 cuts the middle of two equal distances by half of it.
+    ("union(sphere(1), sphere(1), chamfer: 0.4)", [3.0, 0.0, 0.0], 1.8),
+    ("intersect(sphere(1), sphere(1), chamfer: 0.4)", [3.0, 0.0, 0.0], 2.2),
+    // Two steps in a width of 3: edges that stand out at (1, 2) and (2, 1), dents at (0, 2), (1, 1), (2, 0).
+    ("union(plane((1, 0, 0)), plane((0, 1, 0)), stairs: 3, steps: 2)", [1.0, 1.0, 0.0], 0.0),
+    ("union(plane((1, 0, 0)), plane((0, 1, 0)), stairs: 3, steps: 2)", [1.0, 2.0, 0.0], 0.0),
+    ("union(plane((1, 0, 0)), plane((0, 1, 0)), stairs: 3, steps: 2)", [2.0, 2.5, 0.0], 1.0),
+    ("union(plane((1, 0, 0)), plane((0, 1, 0)), stairs: 3, steps: 2)", [0.0, 4.0, 0.0], 0.0),
+    ("sphere(1).translate((3, 0, 0)).rotate((0, 0, 2), 90deg)", [0.0, 3.0, 0.0], -1.0),
+    ("sphere(1).translate((1, 0, 0)).rotate((1, 1, 1), 120deg)", [0.0, 1.0, 0.0], -1.0),
+    ("sphere(1).translate((0, 3, 0)).look_along((1, 0, -1))", [1.5 * SQRT_2, 0.0, -1.5 * SQRT_2], -1.0),
+    ("sphere(1).translate((0, 3, 0)).look_along((0, -1, 0))", [0.0, -3.0, 0.0], -1.0),
+    ("sphere(1).translate((0, 0, 3)).look_along((0, -1, 0))", [0.0, 0.0, -3.0], -1.0),
+    ("sphere(1).translate((3, 0, 0)).mirror((2, 0, 0))", [-3.0, 0.0, 2.0], 1.0),
+    ("sphere(1).elongate((0, 2, 0))", [0.0, 5.0, 0.0], 2.0),
+    ("sphere(2).shell(0.5)", [0.0, 0.0, 0.0], 1.75),
+    ("sphere(2).shell(0.5)", [2.0, 0.0, 0.0], -0.25),
+    ("box((1, 1, 1)).scale((1, 2, 3))", [4.0, 2.0, 3.0], 3.0),
+    ("sphere(1).translate((2, 0, 0)).twist(90deg)", [0.0, 1.0, -2.0], -1.0),
+    ("sphere(1).repeat((4, 0, 0), count: (3, 1, 1))", [10.0, 0.0, 0.0], 5.0),
+    ("sphere(1).repeat((4, 0, 0), count: (3, 1, 1))", [4.0, 0.0, 0.0], -1.0),
+    ("sphere(1).repeat((4, 0, 4))", [402.0, 0.0, 0.0], 1.0),
+    ("sphere(1).repeat((4, 0, 0), count: 2)", [2.0, 0.0, 0.0], -1.0),
+    // The nearest copy is in the next cell.
+    ("sphere(1).translate((0.9, 0, 0)).repeat((4, 0, 0), overlap: 1)", [-1.5, 0.0, 0.0], 0.6),
+    ("sphere(1).translate((4, 0, 0)).repeat_polar(4)", [0.0, 0.0, 4.0], -1.0),
+    ("sphere(1).translate((4, 0, 0)).repeat_polar(6)", [-6.0, 0.0, 0.0], 1.0),
+    ("implicit(p => dot(p, p) - 1, bounds: (2, 2, 2))", [1.5, 0.0, 0.0], 1.25),
+    ("implicit(p => p.y, bounds: (2, 2, 2))", [5.0, -1.0, 0.0], 3.0),
 ];
 
 /// The trials of this file.
@@ -71,13 +122,40 @@ fn check(shape: &str, at: [f64; 3], expected: f64) -> Result<(), Failed> {
 }
 
 /// Shapes whose bounds come about in different ways.
-const SOLIDS: [&str; 6] = [
+const SOLIDS: &[&str] = &[
     "union(sphere(0.6), cylinder(0.2, 1.1), smooth: 0.3).rotate_z(35deg).translate((0.3, 0, 0))",
     "(box((0.5, 0.2, 0.9)) - sphere(0.4)).rotate_x(20deg).rotate_y(50deg)",
     "torus(0.7, 0.2).scale(1.3).translate((0, 0.4, 0))",
     "sphere(0.8).displace(p => 0.1 * sin(9 * p.x) * sin(8 * p.y) * sin(7 * p.z))",
     "box((0.5, 0.5, 0.5)).round(0.1).displace(p => 0.15 * perlin(4 * p))",
     "capsule((-0.5, -0.5, 0), (0.5, 0.7, 0.2), 0.25) & sphere(0.8)",
+    "cone(0.6, 0.5)",
+    "cone(0.3, 0.5, top: 0.7)",
+    "prism(3, 0.8, 0.5)",
+    "prism(5, 0.6, 0.9)",
+    "pyramid(0.7, 0.6)",
+    "pyramid(0.9, 0.1)",
+    "ellipsoid((0.9, 0.15, 0.5)).round(0.1)",
+    "octahedron(0.9)",
+    "disk(0.9, thickness: 0.2)",
+    "implicit(p => sin(6 * p.x) * cos(6 * p.y) + sin(6 * p.y) * cos(6 * p.z) + sin(6 * p.z) * cos(6 * p.x), bounds: 0.9)",
+    "implicit(p => 0.05 * (dot(p, p) - 0.5), bounds: (0.6, 0.8, 0.9)).round(0.1)",
+    "union(sphere(0.5), box((0.9, 0.1, 0.9)), sphere(0.55), sphere(0.52), chamfer: 0.3)",
+    "union(cylinder(0.3, 0.9), box((0.9, 0.2, 0.9)), stairs: 0.4, steps: 4)",
+    "union(sphere(0.5), sphere(0.5), sphere(0.5), sphere(0.5), smooth: 0.6)",
+    "intersect(sphere(0.9), box((0.7, 0.7, 0.7)), stairs: 0.3)",
+    "subtract(box((0.9, 0.4, 0.9)), cylinder(0.5, 2), chamfer: 0.2)",
+    "cone(0.4, 0.9).rotate((1, 2, 3), 77deg).look_along((1, -2, 0.5))",
+    "box((0.4, 0.2, 0.3)).translate((0.5, 0.1, 0)).mirror((1, 1, 0))",
+    "octahedron(0.5).elongate((0.4, 0, 0.2))",
+    "torus(0.8, 0.3).shell(0.1)",
+    "sphere(0.5).scale((2.5, 0.6, 1)).round(0.1)",
+    "box((0.8, 0.9, 0.1)).twist(100deg)",
+    "union(box((0.2, 0.9, 0.1)).twist(200deg), sphere(0.2).translate((1, 0, 0)), smooth: 0.2)",
+    "cone(0.2, 0.2).translate((0.05, 0, 0)).repeat((0.5, 0.5, 0.6), count: (3, 2, 3))",
+    "box((0.4, 0.1, 0.1)).rotate_y(30deg).repeat((0.5, 0.4, 0), count: (3, 4, 1), overlap: 1)",
+    "box((0.3, 0.3, 0.1)).rotate_x(20deg).translate((0.8, 0, 0)).repeat_polar(7)",
+    "capsule((0, 0, 0), (0.9, 0.3, 0.3), 0.1).repeat_polar(5, overlap: 5)",
 ];
 
 /// Points on a grid over the unit neighbourhood.

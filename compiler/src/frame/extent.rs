@@ -1,10 +1,12 @@
 //! Bounds and steepness of solids in one frame, in f64.
 
+mod warp;
+
 use super::Aabb;
 use crate::curve::{CurveTable, Quadratic};
 use crate::ir::{FunctionId, Module};
 use crate::ops::interval::Interval;
-use crate::program::{Extent, LEAST_RADIUS, Slot, Slot3};
+use crate::program::{Extent, LEAST_RADIUS, Measure, Slot, Slot3};
 use crate::reference;
 use glam::DVec3;
 use vol_language::diag::Diagnostic;
@@ -41,6 +43,12 @@ impl Solid {
         Self { bounds: placed(self.bounds, columns, offset), cells, ..self }
     }
 
+    /// Pulled apart along the axes.
+    fn widened(self, by: [f64; 3]) -> Self {
+        let cells = self.cells.into_iter().map(|b| widened(b, by)).collect();
+        Self { bounds: widened(self.bounds, by), cells, ..self }
+    }
+
     /// Grown, or shrunk.
     fn grown(self, by: f64) -> Self {
         // A cell is the box of a slice. What is nearer than `by` to its rim may be off the slice and
@@ -58,6 +66,9 @@ pub(super) struct Space<'a> {
     pub(super) curves: &'a [Vec<Quadratic>],
     pub(super) tables: &'a [CurveTable],
 }
+
+/// Stands for what has no end where a number must be finite in f32.
+const FAR: f64 = 1e18;
 
 /// Parts per axis into which a box is cut when a function is bounded over it.
 const PARTS: usize = 4;
@@ -106,6 +117,23 @@ impl Space<'_> {
             Extent::Grown(child, by) => {
                 let by = self.at(*by);
                 self.solid(child)?.grown(by)
+            }
+            Extent::Elongated { child, by } => self.solid(child)?.widened(self.at3(*by)),
+            Extent::Twisted { child, rate, span } => {
+                warp::twisted(self.solid(child)?, self.at(*rate), *span)?
+            }
+            Extent::Repeated { child, axes, overlap, span } => {
+                let rows = axes.map(|run| run.map(|run| (self.at(run.period), run.count)));
+                warp::repeated(self.solid(child)?, rows, *overlap, *span)?
+            }
+            Extent::Around { child, count, overlap, span } => {
+                warp::around(self.solid(child)?, *count, *overlap, *span)?
+            }
+            Extent::Field { half, slope, span } => {
+                let half = self.at3(*half);
+                let bounds = ordered(half.map(|c| -c), half);
+                let steepness = self.steepest(bounds, *slope).ok_or_else(|| unbounded(*span))?;
+                Solid { steepness: steepness.max(1.0), ..exact(bounds) }
             }
             Extent::Displaced { child, amount, slope, span } => {
                 let child = self.solid(child)?;
@@ -220,16 +248,41 @@ impl Space<'_> {
             }
         }
         let solid = child.grown(reach);
+        let steepest = self.steepest(solid.bounds, slope).ok_or_else(|| unbounded(span))?;
+        Ok(Solid { steepness: solid.steepness + steepest, ..solid })
+    }
+
+    /// Largest length of a gradient over a box, if it is finite.
+    fn steepest(&self, bounds: Box3, slope: FunctionId) -> Option<f64> {
         let mut steepest: f64 = 0.0;
-        for cell in grid(solid.bounds, PARTS) {
+        for cell in grid(bounds, PARTS) {
             let gradient = self.interval(slope, &cell);
             let squared: f64 = gradient.iter().map(|g| g.magnitude() * g.magnitude()).sum();
             steepest = steepest.max(squared.sqrt());
         }
-        if !steepest.is_finite() {
-            return Err(unbounded(span));
-        }
-        Ok(Solid { steepness: solid.steepness + steepest, ..solid })
+        steepest.is_finite().then_some(steepest)
+    }
+
+    /// The numbers of a measure; infinite ones as large finite ones.
+    ///
+    /// # Errors
+    /// A displacement without a bound.
+    pub(super) fn measure(&self, measure: &Measure) -> Result<Vec<f64>, Diagnostic> {
+        let numbers = match measure {
+            Measure::Radius(extent) => vec![warp::radius(self.solid(extent)?.bounds)],
+            Measure::Box(extent) => {
+                let bounds = self.solid(extent)?.bounds;
+                let endless = |i: usize| !(bounds.lo[i].is_finite() && bounds.hi[i].is_finite());
+                let centre = |i| if endless(i) { 0.0 } else { 0.5 * (bounds.lo[i] + bounds.hi[i]) };
+                // A little more, so that rounding to f32 leaves the solid inside.
+                let slack = |i: usize| warp::SLACK * bounds.lo[i].abs().max(bounds.hi[i].abs());
+                let wider = |i| {
+                    if endless(i) { FAR } else { 0.5 * (bounds.hi[i] - bounds.lo[i]) + slack(i) }
+                };
+                vec![centre(0), centre(1), centre(2), wider(0), wider(1), wider(2)]
+            }
+        };
+        Ok(numbers.into_iter().map(|x| x.clamp(-FAR, FAR)).collect())
     }
 }
 

@@ -1,16 +1,30 @@
 //! Solids: signed distance, local coordinates, extent.
 //!
-//! Primitives, operators and transforms follow the formulas that the design gives with their
-//! proofs; what is *exact* and what a *lower bound* is said at each variant.
+//! What is *exact* and what a *lower bound* is said at each variant.
+//!
+//! | room | holds |
+//! |---|---|
+//! | `primitives` | solids that are not made of others |
+//! | `blend` | how two surfaces meet |
+//! | `transform` | maps of space |
+//! | `copies` | repetition |
+
+pub(crate) mod blend;
+pub(crate) mod copies;
+pub(crate) mod primitives;
+pub(crate) mod transform;
 
 use super::tube::Tube;
 use super::value::{Closure, Value};
 use super::{Lowered, Lowerer};
-use crate::ir::ValueId;
-use crate::ir::graph::Graph;
+use crate::ir::{FunctionId, ValueId};
 use crate::ops::Op;
 use crate::program::Extent;
+use blend::Blend;
+use copies::Copies;
+use primitives::Primitive;
 use std::rc::Rc;
+use transform::Transform;
 use vol_language::ast::BinaryOp;
 use vol_language::diag::Diagnostic;
 use vol_language::hir::LocalField;
@@ -35,36 +49,28 @@ pub(crate) struct Shape {
 /// The kinds of solids. Lengths are in scene units, negative distance is inside.
 #[derive(Debug)]
 pub(crate) enum Kind {
-    /// Exact.
-    Sphere { radius: ValueId },
-    /// Exact; half extents along the axes.
-    Box { half: [ValueId; 3] },
-    /// Exact; axis y.
-    Cylinder { radius: ValueId, half_height: ValueId },
-    /// Exact; axis y, without ends.
-    InfiniteCylinder { radius: ValueId },
-    /// Exact; axis y, the circle of radius `major` thickened by `minor`.
-    Torus { major: ValueId, minor: ValueId },
-    /// Exact; the segment from `a` to `b` thickened by `radius`.
-    Capsule { a: [ValueId; 3], b: [ValueId; 3], radius: ValueId },
-    /// Exact; all points with `normal . p <= offset`, the normal of unit length.
-    Plane { normal: [ValueId; 3], offset: ValueId },
+    /// Not made of others.
+    Primitive(Primitive),
     /// See [`Tube`]; not a distance bound, so a region only.
     Tube(Tube),
+    /// The points of a box at the origin, given by its half extents, where a field is negative. Its
+    /// distance is the field (as it is at the nearest point of the box) or that of the box if larger;
+    /// divided by the steepness of the field in the box when it is marched.
+    Implicit { field: Rc<Closure>, half: [ValueId; 3], span: Span },
     /// Lower bound outside.
-    Union { shapes: Vec<Rc<Shape>>, smooth: Option<ValueId> },
+    Union { shapes: Vec<Rc<Shape>>, blend: Blend },
     /// Lower bound.
-    Intersection { shapes: Vec<Rc<Shape>>, smooth: Option<ValueId> },
+    Intersection { shapes: Vec<Rc<Shape>>, blend: Blend },
     /// Lower bound.
-    Difference { from: Rc<Shape>, what: Rc<Shape>, smooth: Option<ValueId> },
-    /// As exact as the child.
-    Translated { child: Rc<Shape>, offset: [ValueId; 3] },
-    /// As exact as the child; columns of the rotation matrix.
-    Rotated { child: Rc<Shape>, columns: [[ValueId; 3]; 3] },
-    /// As exact as the child.
-    Scaled { child: Rc<Shape>, factor: ValueId },
+    Difference { from: Rc<Shape>, what: Rc<Shape>, blend: Blend },
+    /// Seen through a map of space.
+    Transformed { child: Rc<Shape>, transform: Transform },
+    /// Many times.
+    Repeated { child: Rc<Shape>, copies: Copies },
     /// The child grown by a distance on all sides; exact outside if the child is.
     Rounded { child: Rc<Shape>, radius: ValueId },
+    /// All points within a distance of the child's surface; exact if the child is.
+    Shell { child: Rc<Shape>, half: ValueId },
     /// The child's distance plus an amount; divided by its steepness when it is marched.
     Displaced { child: Rc<Shape>, amount: Rc<Closure>, span: Span },
 }
@@ -78,9 +84,9 @@ pub(crate) fn operator(
     span: Span,
 ) -> Lowered<Value> {
     let kind = match op {
-        BinaryOp::Union => Kind::Union { shapes: vec![a, b], smooth: None },
-        BinaryOp::Intersection => Kind::Intersection { shapes: vec![a, b], smooth: None },
-        BinaryOp::Subtract => Kind::Difference { from: a, what: b, smooth: None },
+        BinaryOp::Union => Kind::Union { shapes: vec![a, b], blend: Blend::Sharp },
+        BinaryOp::Intersection => Kind::Intersection { shapes: vec![a, b], blend: Blend::Sharp },
+        BinaryOp::Subtract => Kind::Difference { from: a, what: b, blend: Blend::Sharp },
         other => unreachable!("shapes have no operator {}", other.symbol()),
     };
     Shape::value(kind, lowerer, span)
@@ -92,6 +98,7 @@ impl Shape {
         kind.check_sizes(lowerer, span)?;
         let children = kind.children();
         let parts = children.iter().fold(1u32, |sum, child| sum.saturating_add(child.parts));
+        let parts = parts.saturating_mul(kind.copies());
         let levels = 1 + children.iter().map(|child| child.levels).max().unwrap_or(0);
         if parts > MAX_PARTS || levels > MAX_LEVELS {
             return Err(too_large(parts, span));
@@ -101,56 +108,41 @@ impl Shape {
 
     /// Signed distance (or the bound that the variant states) at a point.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
-        let graph = &mut lowerer.graph;
         Ok(match &self.kind {
-            Kind::Sphere { radius } => {
-                let length = graph.length(&p);
-                graph.sub(length, *radius)
-            }
-            Kind::Box { half } => box_distance(graph, p, *half),
-            Kind::Cylinder { radius, half_height } => {
-                let radial = graph.length(&[p[0], p[2]]);
-                let radial = graph.sub(radial, *radius);
-                let axial = graph.apply(Op::Abs, &[p[1]]);
-                let axial = graph.sub(axial, *half_height);
-                corner_distance(graph, &[radial, axial])
-            }
-            Kind::InfiniteCylinder { radius } => {
-                let radial = graph.length(&[p[0], p[2]]);
-                graph.sub(radial, *radius)
-            }
-            Kind::Torus { major, minor } => {
-                let radial = graph.length(&[p[0], p[2]]);
-                let radial = graph.sub(radial, *major);
-                let tube = graph.length(&[radial, p[1]]);
-                graph.sub(tube, *minor)
-            }
-            Kind::Capsule { a, b, radius } => capsule_distance(graph, p, *a, *b, *radius),
-            Kind::Plane { normal, offset } => {
-                let height = graph.dot(normal, &p);
-                graph.sub(height, *offset)
-            }
+            Kind::Primitive(primitive) => primitive.distance(&mut lowerer.graph, p),
             Kind::Tube(tube) => tube.distance(lowerer, p)?,
-            Kind::Union { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_min)?,
-            Kind::Intersection { shapes, smooth } => fold_shapes(lowerer, shapes, p, *smooth, smooth_max)?,
-            Kind::Difference { from, what, smooth } => {
+            Kind::Implicit { field, half, .. } => {
+                let graph = &mut lowerer.graph;
+                let around = primitives::box_distance(graph, p, *half);
+                let held = [0, 1, 2].map(|i| {
+                    let low = graph.apply(Op::Neg, &[half[i]]);
+                    primitives::clamped(graph, p[i], low, half[i])
+                });
+                let field = lowerer.call(field, &[Value::Numbers(held.to_vec())])?.scalar();
+                lowerer.graph.max(around, field)
+            }
+            Kind::Union { shapes, blend } => {
+                blend::fold(lowerer, shapes, p, |graph, a, b| blend.union(graph, a, b))?
+            }
+            Kind::Intersection { shapes, blend } => {
+                blend::fold(lowerer, shapes, p, |graph, a, b| blend.intersection(graph, a, b))?
+            }
+            Kind::Difference { from, what, blend } => {
                 let from = from.distance(lowerer, p)?;
                 let what = what.distance(lowerer, p)?;
                 let outside = lowerer.graph.apply(Op::Neg, &[what]);
-                smooth_max(&mut lowerer.graph, from, outside, *smooth)
+                blend.intersection(&mut lowerer.graph, from, outside)
             }
-            Kind::Translated { child, .. } | Kind::Rotated { child, .. } => {
-                let inner = self.child_position(graph, p);
-                child.distance(lowerer, inner)?
-            }
-            Kind::Scaled { child, factor } => {
-                let inner = self.child_position(graph, p);
-                let distance = child.distance(lowerer, inner)?;
-                lowerer.graph.mul(distance, *factor)
-            }
+            Kind::Transformed { child, transform } => transform.distance(lowerer, child, p)?,
+            Kind::Repeated { child, copies } => copies.nearest(lowerer, child, p)?.1,
             Kind::Rounded { child, radius } => {
                 let distance = child.distance(lowerer, p)?;
                 lowerer.graph.sub(distance, *radius)
+            }
+            Kind::Shell { child, half } => {
+                let distance = child.distance(lowerer, p)?;
+                let off = lowerer.graph.apply(Op::Abs, &[distance]);
+                lowerer.graph.sub(off, *half)
             }
             Kind::Displaced { child, amount, .. } => {
                 let distance = child.distance(lowerer, p)?;
@@ -160,59 +152,23 @@ impl Shape {
         })
     }
 
-    /// A point in the coordinates of the child of a transform.
-    fn child_position(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
-        match &self.kind {
-            Kind::Translated { offset, .. } => [0, 1, 2].map(|i| graph.sub(p[i], offset[i])),
-            Kind::Rotated { columns, .. } => columns.map(|column| graph.dot(&column, &p)),
-            Kind::Scaled { factor, .. } => p.map(|v| graph.div(v, *factor)),
-            Kind::Sphere { .. }
-            | Kind::Box { .. }
-            | Kind::Cylinder { .. }
-            | Kind::InfiniteCylinder { .. }
-            | Kind::Torus { .. }
-            | Kind::Capsule { .. }
-            | Kind::Plane { .. }
-            | Kind::Tube(_)
-            | Kind::Union { .. }
-            | Kind::Intersection { .. }
-            | Kind::Difference { .. }
-            | Kind::Rounded { .. }
-            | Kind::Displaced { .. } => p,
-        }
-    }
-
     /// Where the shape is and how steep its distance.
     pub(crate) fn extent(&self, lowerer: &mut Lowerer<'_>, span: Span) -> Lowered<Extent> {
-        let zero = lowerer.graph.number(0.0);
         match &self.kind {
-            Kind::Sphere { radius } => centred_box(lowerer, [*radius; 3], span),
-            Kind::Box { half } => centred_box(lowerer, *half, span),
-            Kind::Cylinder { radius, half_height } => {
-                centred_box(lowerer, [*radius, *half_height, *radius], span)
-            }
-            Kind::Torus { major, minor } => {
-                let wide = lowerer.graph.add(*major, *minor);
-                centred_box(lowerer, [wide, *minor, wide], span)
-            }
-            Kind::Capsule { a, b, radius } => {
-                let graph = &mut lowerer.graph;
-                let lo = [0, 1, 2].map(|i| graph.min(a[i], b[i]));
-                let hi = [0, 1, 2].map(|i| graph.max(a[i], b[i]));
-                let lo = lowerer.slots(lo, "a shape", span)?;
-                let hi = lowerer.slots(hi, "a shape", span)?;
-                let radius = lowerer.slot(*radius, "a radius", span)?;
-                Ok(Extent::Grown(Box::new(Extent::Box { lo, hi }), radius))
-            }
-            Kind::InfiniteCylinder { .. } | Kind::Plane { .. } => Ok(Extent::Unbounded),
+            Kind::Primitive(primitive) => primitive.extent(lowerer, span),
             Kind::Tube(tube) => tube.extent(lowerer),
-            Kind::Union { shapes, smooth } => {
+            Kind::Implicit { field, half, span } => {
+                let (_, slope) = value_and_slope(lowerer, field, *span)?;
+                let half = lowerer.slots(*half, "the bounds of a field", *span)?;
+                Ok(Extent::Field { half, slope, span: *span })
+            }
+            Kind::Union { shapes, blend } => {
                 let union = Extent::Union(extents(lowerer, shapes, span)?);
-                // The blend bulges out by at most a quarter of its width.
-                let quarter = lowerer.graph.number(0.25);
-                let bulge = smooth.map_or(zero, |k| lowerer.graph.mul(k, quarter));
-                let bulge = lowerer.slot(bulge, "the width of a blend", span)?;
-                Ok(if smooth.is_some() { Extent::Grown(Box::new(union), bulge) } else { union })
+                let Some(width) = blend.width() else { return Ok(union) };
+                let reach = lowerer.graph.number(blend.reach(shapes.len()));
+                let reach = lowerer.graph.mul(width, reach);
+                let reach = lowerer.slot(reach, "the width of a blend", span)?;
+                Ok(Extent::Grown(Box::new(union), reach))
             }
             Kind::Intersection { shapes, .. } => Ok(Extent::Intersection(extents(lowerer, shapes, span)?)),
             Kind::Difference { from, what, .. } => {
@@ -221,18 +177,36 @@ impl Shape {
                 let what = Extent::Complement(Box::new(what.extent(lowerer, span)?));
                 Ok(Extent::Intersection(vec![from, what]))
             }
-            Kind::Translated { child, offset } => {
-                let one = lowerer.graph.number(1.0);
-                place(lowerer, child, identity(one, zero), *offset, span)
-            }
-            Kind::Rotated { child, columns } => place(lowerer, child, *columns, [zero; 3], span),
-            Kind::Scaled { child, factor } => place(lowerer, child, identity(*factor, zero), [zero; 3], span),
-            Kind::Rounded { child, radius } => {
+            Kind::Transformed { child, transform } => transform.extent(lowerer, child, span),
+            Kind::Repeated { child, copies } => copies.extent(lowerer, child, span),
+            Kind::Rounded { child, radius } | Kind::Shell { child, half: radius } => {
                 let child = child.extent(lowerer, span)?;
                 let radius = lowerer.slot(*radius, "a radius", span)?;
                 Ok(Extent::Grown(Box::new(child), radius))
             }
-            Kind::Displaced { child, amount, span } => displaced_extent(lowerer, child, amount, *span),
+            Kind::Displaced { child, amount, span } => {
+                let child = Box::new(child.extent(lowerer, *span)?);
+                let (amount, slope) = value_and_slope(lowerer, amount, *span)?;
+                Ok(Extent::Displaced { child, amount, slope, span: *span })
+            }
+        }
+    }
+
+    /// Whether the solid and its distance are known to be their own mirror images in the plane across
+    /// an axis.
+    pub(crate) fn is_symmetric(&self, axis: usize) -> bool {
+        match &self.kind {
+            Kind::Primitive(primitive) => primitive.is_symmetric(axis),
+            Kind::Union { shapes, .. } | Kind::Intersection { shapes, .. } => {
+                shapes.iter().all(|shape| shape.is_symmetric(axis))
+            }
+            Kind::Difference { from, what, .. } => from.is_symmetric(axis) && what.is_symmetric(axis),
+            Kind::Rounded { child, .. } | Kind::Shell { child, .. } => child.is_symmetric(axis),
+            Kind::Tube(_)
+            | Kind::Implicit { .. }
+            | Kind::Transformed { .. }
+            | Kind::Repeated { .. }
+            | Kind::Displaced { .. } => false,
         }
     }
 
@@ -251,30 +225,45 @@ impl Shape {
         if let Kind::Tube(tube) = &self.kind {
             return tube.local_field(lowerer, p, field);
         }
-        if let Kind::Translated { child, .. }
-        | Kind::Rotated { child, .. }
-        | Kind::Scaled { child, .. }
-        | Kind::Rounded { child, .. }
-        | Kind::Displaced { child, .. } = &self.kind
-        {
-            let inner = self.child_position(&mut lowerer.graph, p);
-            return child.local_field(lowerer, inner, field, span);
+        match &self.kind {
+            Kind::Transformed { child, transform } => {
+                let inner = transform.to_child(&mut lowerer.graph, p);
+                return child.local_field(lowerer, inner, field, span);
+            }
+            Kind::Repeated { child, copies } => {
+                let (inner, _) = copies.nearest(lowerer, child, p)?;
+                return child.local_field(lowerer, inner, field, span);
+            }
+            Kind::Rounded { child, .. } | Kind::Shell { child, .. } | Kind::Displaced { child, .. } => {
+                return child.local_field(lowerer, p, field, span);
+            }
+            Kind::Primitive(_)
+            | Kind::Tube(_)
+            | Kind::Implicit { .. }
+            | Kind::Union { .. }
+            | Kind::Intersection { .. }
+            | Kind::Difference { .. } => {}
         }
         let graph = &mut lowerer.graph;
         match (field, &self.kind) {
             (LocalField::Local, _) => Ok(p.to_vec()),
             (LocalField::Stretch, _) => Ok(vec![graph.number(1.0)]),
             (LocalField::Angle, _) => Ok(vec![graph.apply(Op::Atan2, &[p[2], p[0]])]),
-            (LocalField::Radius, Kind::Sphere { radius }) => {
+            (LocalField::Radius, Kind::Primitive(Primitive::Sphere { radius })) => {
                 let length = graph.length(&p);
                 Ok(vec![graph.div(length, *radius)])
             }
-            (LocalField::Radius, Kind::Cylinder { radius, .. } | Kind::InfiniteCylinder { radius }) => {
+            (
+                LocalField::Radius,
+                Kind::Primitive(Primitive::Cylinder { radius, .. } | Primitive::InfiniteCylinder { radius }),
+            ) => {
                 let radial = graph.length(&[p[0], p[2]]);
                 Ok(vec![graph.div(radial, *radius)])
             }
-            (LocalField::L, Kind::Cylinder { half_height, .. }) => Ok(vec![graph.add(p[1], *half_height)]),
-            (LocalField::T, Kind::Cylinder { half_height, .. }) => {
+            (LocalField::L, Kind::Primitive(Primitive::Cylinder { half_height, .. })) => {
+                Ok(vec![graph.add(p[1], *half_height)])
+            }
+            (LocalField::T, Kind::Primitive(Primitive::Cylinder { half_height, .. })) => {
                 let along = graph.add(p[1], *half_height);
                 let height = graph.add(*half_height, *half_height);
                 Ok(vec![graph.div(along, height)])
@@ -287,49 +276,55 @@ impl Shape {
 impl Kind {
     /// Refuses sizes that are known to make no solid.
     fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
-        let (sizes, what): (&[ValueId], &str) = match self {
-            Self::Sphere { radius } | Self::InfiniteCylinder { radius } | Self::Capsule { radius, .. } => {
-                (&[*radius], "a radius")
+        match self {
+            Self::Primitive(primitive) => primitive.check_sizes(lowerer, span),
+            Self::Implicit { half, .. } => {
+                lowerer.refuse(half, |x| x <= 0.0, "the bounds of a field must be more than 0", span)
             }
-            Self::Box { half } => (half, "a half extent"),
-            Self::Cylinder { radius, half_height } => (&[*radius, *half_height], "a radius or half height"),
-            Self::Torus { major, minor } => (&[*major, *minor], "a radius"),
-            Self::Scaled { factor, .. } => {
-                return lowerer.refuse(&[*factor], |x| x <= 0.0, "a scale must be more than 0", span);
+            Self::Transformed { transform, .. } => transform.check_sizes(lowerer, span),
+            Self::Shell { half, .. } => {
+                lowerer.refuse(&[*half], |x| x < 0.0, "a thickness must be at least 0", span)
             }
-            Self::Plane { .. }
-            | Self::Tube(_)
+            Self::Tube(_)
             | Self::Union { .. }
             | Self::Intersection { .. }
             | Self::Difference { .. }
-            | Self::Translated { .. }
-            | Self::Rotated { .. }
+            | Self::Repeated { .. }
             | Self::Rounded { .. }
-            | Self::Displaced { .. } => return Ok(()),
-        };
-        lowerer.refuse(sizes, |x| x < 0.0, &format!("{what} must be at least 0"), span)
+            | Self::Displaced { .. } => Ok(()),
+        }
     }
 
     /// The shapes that this one is made of.
     fn children(&self) -> Vec<&Shape> {
         match self {
-            Self::Sphere { .. }
-            | Self::Box { .. }
-            | Self::Cylinder { .. }
-            | Self::InfiniteCylinder { .. }
-            | Self::Torus { .. }
-            | Self::Capsule { .. }
-            | Self::Plane { .. }
-            | Self::Tube(_) => Vec::new(),
+            Self::Primitive(_) | Self::Tube(_) | Self::Implicit { .. } => Vec::new(),
             Self::Union { shapes, .. } | Self::Intersection { shapes, .. } => {
                 shapes.iter().map(|shape| &**shape).collect()
             }
             Self::Difference { from, what, .. } => vec![from, what],
-            Self::Translated { child, .. }
-            | Self::Rotated { child, .. }
-            | Self::Scaled { child, .. }
+            Self::Transformed { child, .. }
+            | Self::Repeated { child, .. }
             | Self::Rounded { child, .. }
+            | Self::Shell { child, .. }
             | Self::Displaced { child, .. } => vec![child],
+        }
+    }
+
+    /// How often the children are computed at each point.
+    fn copies(&self) -> u32 {
+        match self {
+            Self::Repeated { copies, .. } => copies.asked(),
+            Self::Primitive(_)
+            | Self::Tube(_)
+            | Self::Implicit { .. }
+            | Self::Union { .. }
+            | Self::Intersection { .. }
+            | Self::Difference { .. }
+            | Self::Transformed { .. }
+            | Self::Rounded { .. }
+            | Self::Shell { .. }
+            | Self::Displaced { .. } => 1,
         }
     }
 }
@@ -360,146 +355,22 @@ fn no_such_coordinate(field: LocalField, span: Span) -> Box<Diagnostic> {
     )
 }
 
-fn box_distance(graph: &mut Graph, p: [ValueId; 3], half: [ValueId; 3]) -> ValueId {
-    let outside = [0, 1, 2].map(|i| {
-        let away = graph.apply(Op::Abs, &[p[i]]);
-        graph.sub(away, half[i])
-    });
-    corner_distance(graph, &outside)
-}
-
-/// Distance of a product of slabs from the signed distances of the slabs:
-/// `length(max(d, 0)) + min(max(d), 0)`.
-fn corner_distance(graph: &mut Graph, slabs: &[ValueId]) -> ValueId {
-    let zero = graph.number(0.0);
-    let positive: Vec<ValueId> = slabs.iter().map(|&d| graph.max(d, zero)).collect();
-    let outside = graph.length(&positive);
-    let largest = slabs.iter().copied().reduce(|a, b| graph.max(a, b)).unwrap_or(zero);
-    // On the surface itself both parts are 0; in this order the slope there is that of the inside,
-    // where the other order has none.
-    let inside = graph.min(zero, largest);
-    graph.add(outside, inside)
-}
-
-fn capsule_distance(
-    graph: &mut Graph,
-    p: [ValueId; 3],
-    a: [ValueId; 3],
-    b: [ValueId; 3],
-    radius: ValueId,
-) -> ValueId {
-    let (zero, one) = (graph.number(0.0), graph.number(1.0));
-    let from_a = [0, 1, 2].map(|i| graph.sub(p[i], a[i]));
-    let axis = [0, 1, 2].map(|i| graph.sub(b[i], a[i]));
-    // t = clamp(pa . ba / ba . ba, 0, 1); a point-like axis has t = 0.
-    let squared = graph.dot(&axis, &axis);
-    let degenerate = graph.apply(Op::LessEqual, &[squared, zero]);
-    let divisor = graph.select(degenerate, one, squared);
-    let along = graph.dot(&from_a, &axis);
-    let t = graph.div(along, divisor);
-    let t = graph.max(t, zero);
-    let t = graph.min(t, one);
-    let off = [0, 1, 2].map(|i| {
-        let foot = graph.mul(axis[i], t);
-        graph.sub(from_a[i], foot)
-    });
-    let distance = graph.length(&off);
-    graph.sub(distance, radius)
-}
-
-type Blend = fn(&mut Graph, ValueId, ValueId, Option<ValueId>) -> ValueId;
-
-fn fold_shapes(
-    lowerer: &mut Lowerer<'_>,
-    shapes: &[Rc<Shape>],
-    p: [ValueId; 3],
-    smooth: Option<ValueId>,
-    blend: Blend,
-) -> Lowered<ValueId> {
-    let mut result = None;
-    for shape in shapes {
-        let distance = shape.distance(lowerer, p)?;
-        result = Some(match result {
-            None => distance,
-            Some(before) => blend(&mut lowerer.graph, before, distance, smooth),
-        });
-    }
-    // The union of nothing is nowhere.
-    Ok(result.unwrap_or_else(|| lowerer.graph.number(1e6)))
-}
-
-/// `min(a, b) - h^2 / (4 k)`, `h = max(k - |a - b|, 0)`: 1-Lipschitz if both are.
-fn smooth_min(graph: &mut Graph, a: ValueId, b: ValueId, smooth: Option<ValueId>) -> ValueId {
-    let sharp = graph.min(a, b);
-    let Some(width) = smooth else { return sharp };
-    let bulge = blend_bulge(graph, a, b, width);
-    graph.sub(sharp, bulge)
-}
-
-fn smooth_max(graph: &mut Graph, a: ValueId, b: ValueId, smooth: Option<ValueId>) -> ValueId {
-    let sharp = graph.max(a, b);
-    let Some(width) = smooth else { return sharp };
-    let bulge = blend_bulge(graph, a, b, width);
-    graph.add(sharp, bulge)
-}
-
-fn blend_bulge(graph: &mut Graph, a: ValueId, b: ValueId, width: ValueId) -> ValueId {
-    let zero = graph.number(0.0);
-    // A width that a param turns to 0 must not divide by it.
-    let least = graph.number(1e-6);
-    let width = graph.max(width, least);
-    let apart = graph.sub(a, b);
-    let apart = graph.apply(Op::Abs, &[apart]);
-    let overlap = graph.sub(width, apart);
-    let overlap = graph.max(overlap, zero);
-    let squared = graph.mul(overlap, overlap);
-    let quarter = graph.number(0.25);
-    let divisor = graph.div(quarter, width);
-    graph.mul(squared, divisor)
-}
-
 fn extents(lowerer: &mut Lowerer<'_>, shapes: &[Rc<Shape>], span: Span) -> Lowered<Vec<Extent>> {
     shapes.iter().map(|shape| shape.extent(lowerer, span)).collect()
 }
 
-fn centred_box(lowerer: &mut Lowerer<'_>, half: [ValueId; 3], span: Span) -> Lowered<Extent> {
-    let lo = half.map(|v| lowerer.graph.apply(Op::Neg, &[v]));
-    let lo = lowerer.slots(lo, "a shape", span)?;
-    let hi = lowerer.slots(half, "a shape", span)?;
-    Ok(Extent::Box { lo, hi })
-}
-
-fn identity(scale: ValueId, zero: ValueId) -> [[ValueId; 3]; 3] {
-    [[scale, zero, zero], [zero, scale, zero], [zero, zero, scale]]
-}
-
-fn place(
+/// A function of the position and its gradient, as functions of their own.
+fn value_and_slope(
     lowerer: &mut Lowerer<'_>,
-    child: &Rc<Shape>,
-    columns: [[ValueId; 3]; 3],
-    offset: [ValueId; 3],
+    of: &Rc<Closure>,
     span: Span,
-) -> Lowered<Extent> {
-    let child = Box::new(child.extent(lowerer, span)?);
-    let mut column = |i: usize| lowerer.slots(columns[i], "a transform", span);
-    let columns = [column(0)?, column(1)?, column(2)?];
-    let offset = lowerer.slots(offset, "a transform", span)?;
-    Ok(Extent::Placed { child, columns, offset })
-}
-
-fn displaced_extent(
-    lowerer: &mut Lowerer<'_>,
-    child: &Rc<Shape>,
-    amount: &Rc<Closure>,
-    span: Span,
-) -> Lowered<Extent> {
-    let child = Box::new(child.extent(lowerer, span)?);
+) -> Lowered<(FunctionId, FunctionId)> {
     let p = lowerer.position();
-    let value = lowerer.call(amount, &[Value::Numbers(p.to_vec())])?.scalar();
+    let value = lowerer.call(of, &[Value::Numbers(p.to_vec())])?.scalar();
     let slope = gradient(lowerer, value, span)?;
-    let amount = lowerer.function("displacement", 3, &[value]);
+    let value = lowerer.function("displacement", 3, &[value]);
     let slope = lowerer.function("displacement slope", 3, &slope);
-    Ok(Extent::Displaced { child, amount, slope, span })
+    Ok((value, slope))
 }
 
 /// Derivatives of a value with respect to the position.

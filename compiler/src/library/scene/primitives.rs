@@ -1,0 +1,192 @@
+//! Shapes that are not made of others.
+
+use super::whole;
+use crate::library::{Builtin, call, math, optional, required};
+use crate::lower::shape::primitives::Primitive;
+use crate::lower::shape::{Kind, Shape};
+use crate::lower::tube;
+use crate::lower::value::Value;
+use crate::lower::{Lowered, Lowerer};
+use vol_language::library::{DefaultValue, Parameter};
+use vol_language::source::Span;
+use vol_language::ty::Type;
+
+fn solid(lowerer: &Lowerer<'_>, span: Span, primitive: Primitive) -> Lowered<Value> {
+    Shape::value(Kind::Primitive(primitive), lowerer, span)
+}
+
+pub(super) fn builtins() -> Vec<Builtin> {
+    let float = |name| required(name, Type::Float);
+    let vec3 = |name| required(name, Type::Vec3);
+    vec![
+        call(
+            "sphere",
+            vec![float("radius")],
+            Type::Shape,
+            "ball at the origin; exact",
+            |lowerer, span, a| solid(lowerer, span, Primitive::Sphere { radius: a[0].scalar() }),
+        ),
+        call(
+            "box",
+            vec![vec3("half")],
+            Type::Shape,
+            "box at the origin from its half extents; exact",
+            |lowerer, span, a| solid(lowerer, span, Primitive::Box { half: a[0].vec3() }),
+        ),
+        call(
+            "cylinder",
+            vec![float("radius"), float("half_height")],
+            Type::Shape,
+            "capped cylinder around the y axis, from -half_height to half_height; exact",
+            |lowerer, span, a| {
+                solid(
+                    lowerer,
+                    span,
+                    Primitive::Cylinder { radius: a[0].scalar(), half_height: a[1].scalar() },
+                )
+            },
+        ),
+        call(
+            "infinite_cylinder",
+            vec![float("radius")],
+            Type::Shape,
+            "cylinder around the y axis; exact",
+            |lowerer, span, a| solid(lowerer, span, Primitive::InfiniteCylinder { radius: a[0].scalar() }),
+        ),
+        call(
+            "torus",
+            vec![float("major"), float("minor")],
+            Type::Shape,
+            "ring around the y axis: a circle of radius major, thickened by minor; exact",
+            |lowerer, span, a| {
+                solid(lowerer, span, Primitive::Torus { major: a[0].scalar(), minor: a[1].scalar() })
+            },
+        ),
+        call(
+            "capsule",
+            vec![vec3("a"), vec3("b"), float("radius")],
+            Type::Shape,
+            "all points within radius of the segment from a to b; exact",
+            |lowerer, span, a| {
+                solid(
+                    lowerer,
+                    span,
+                    Primitive::Capsule { a: a[0].vec3(), b: a[1].vec3(), radius: a[2].scalar() },
+                )
+            },
+        ),
+        call(
+            "plane",
+            vec![vec3("normal"), optional("offset", Type::Float, 0.0)],
+            Type::Shape,
+            "half space below the plane normal . p = offset, the normal made unit length; exact",
+            |lowerer, span, a| {
+                let normal = math::normalize(&mut lowerer.graph, a[0].numbers());
+                solid(
+                    lowerer,
+                    span,
+                    Primitive::Plane { normal: Value::Numbers(normal).vec3(), offset: a[1].scalar() },
+                )
+            },
+        ),
+        tube_builtin(),
+        implicit_builtin(),
+    ]
+    .into_iter()
+    .chain(pointed())
+    .collect()
+}
+
+fn tube_builtin() -> Builtin {
+    let along = |result| Type::function(vec![Type::Float, Type::Float], result);
+    let stretch =
+        Parameter { name: "stretch", ty: Type::Bool, default: DefaultValue::Bool(false), rest: false };
+    let params = vec![
+        required("curve", Type::Curve),
+        required("radius", along(Type::Float)),
+        optional("twist", along(Type::Angle), 0.0),
+        stretch,
+    ];
+    let doc = "tube around a curve with flat ends; radius and twist are numbers or functions of t (0 to 1) or (t, l); \
+               local coordinates are (x / radius, l, y / radius), with stretch l / length in the middle";
+    call("tube", params, Type::Shape, doc, |lowerer, span, a| {
+        let stretch = lowerer.compile_time(a[3].scalar(), "`stretch`", lowerer.argument_span(3, span))? != 0.0;
+        let (radius, twist) = (a[1].function(), a[2].function());
+        Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, lowerer, span)
+    })
+}
+
+/// Shapes with slanted faces, and flat ones.
+fn pointed() -> Vec<Builtin> {
+    let float = |name| required(name, Type::Float);
+    vec![
+        call(
+            "cone",
+            vec![float("radius"), float("half_height"), optional("top", Type::Float, 0.0)],
+            Type::Shape,
+            "cone around the y axis, from radius at -half_height to radius top at half_height; exact",
+            |lowerer, span, a| {
+                let (radius, half_height, top) = (a[0].scalar(), a[1].scalar(), a[2].scalar());
+                solid(lowerer, span, Primitive::Cone { radius, half_height, top })
+            },
+        ),
+        call(
+            "prism",
+            vec![required("sides", Type::Int), float("radius"), float("half_height")],
+            Type::Shape,
+            "upright regular prism with 3 to 64 sides around the y axis, one corner above the x axis, radius to the corners; exact",
+            |lowerer, span, a| {
+                let sides = whole(lowerer, a[0].scalar(), [3, 64], "the number of sides", span)?;
+                let (radius, half_height) = (a[1].scalar(), a[2].scalar());
+                solid(lowerer, span, Primitive::Prism { sides, radius, half_height })
+            },
+        ),
+        call(
+            "pyramid",
+            vec![float("half"), float("half_height")],
+            Type::Shape,
+            "pyramid with a square of half side `half` at y = -half_height and the tip at half_height; exact",
+            |lowerer, span, a| {
+                let (half, half_height) = (a[0].scalar(), a[1].scalar());
+                solid(lowerer, span, Primitive::Pyramid { half, half_height })
+            },
+        ),
+        call(
+            "ellipsoid",
+            vec![required("radii", Type::Vec3)],
+            Type::Shape,
+            "ellipsoid at the origin from its radii along the axes; a lower bound, slow to march where flat",
+            |lowerer, span, a| solid(lowerer, span, Primitive::Ellipsoid { radii: a[0].vec3() }),
+        ),
+        call(
+            "octahedron",
+            vec![float("radius")],
+            Type::Shape,
+            "regular octahedron with its corners on the axes, radius away; exact",
+            |lowerer, span, a| solid(lowerer, span, Primitive::Octahedron { radius: a[0].scalar() }),
+        ),
+        call(
+            "disk",
+            vec![float("radius"), optional("thickness", Type::Float, 0.01)],
+            Type::Shape,
+            "round plate across the y axis: all points within half the thickness of the flat disk; exact",
+            |lowerer, span, a| {
+                let half = lowerer.graph.number(0.5);
+                let rim = lowerer.graph.mul(a[1].scalar(), half);
+                solid(lowerer, span, Primitive::Disk { radius: a[0].scalar(), rim })
+            },
+        ),
+    ]
+}
+
+fn implicit_builtin() -> Builtin {
+    let field = Type::function(vec![Type::Vec3], Type::Float);
+    let params = vec![required("field", field), required("bounds", Type::Vec3)];
+    let doc = "the points of a box at the origin, of half extents bounds, where a function of the position is negative; \
+               a distance in the field's own units, marched safely by its slope in the box";
+    call("implicit", params, Type::Shape, doc, |lowerer, span, a| {
+        let field_span = lowerer.argument_span(0, span);
+        let kind = Kind::Implicit { field: a[0].function(), half: a[1].vec3(), span: field_span };
+        Shape::value(kind, lowerer, span)
+    })
+}

@@ -83,7 +83,7 @@ const CASES: &[(&str, [f64; 3], f64)] = &[
     ("sphere(2).shell(0.5)", [0.0, 0.0, 0.0], 1.75),
     ("sphere(2).shell(0.5)", [2.0, 0.0, 0.0], -0.25),
     ("box((1, 1, 1)).scale((1, 2, 3))", [4.0, 2.0, 3.0], 3.0),
-    ("sphere(1).translate((2, 0, 0)).twist(90deg)", [0.0, 1.0, -2.0], -1.0),
+    ("sphere(1).translate((2, 1, 0)).twist(90deg)", [0.0, 1.0, -2.0], -1.0),
     ("sphere(1).repeat((4, 0, 0), count: (3, 1, 1))", [10.0, 0.0, 0.0], 5.0),
     ("sphere(1).repeat((4, 0, 0), count: (3, 1, 1))", [4.0, 0.0, 0.0], -1.0),
     ("sphere(1).repeat((4, 0, 4))", [402.0, 0.0, 0.0], 1.0),
@@ -108,6 +108,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             )
         })
         .collect();
+    trials.push(Trial::test("shapes::faces_are_at_their_distance", faces_are_at_their_distance));
     trials.push(Trial::test("shapes::bounds_hold_the_inside", bounds_hold_the_inside));
     trials.push(Trial::test("shapes::safe_steps_do_not_overshoot", safe_steps_do_not_overshoot));
     trials
@@ -200,4 +201,71 @@ fn safe_steps_do_not_overshoot() -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// Corners of a regular polygon at a height.
+fn ring(sides: usize, radius: f64, y: f64) -> Vec<[f64; 3]> {
+    let turn = |i| std::f64::consts::TAU * i as f64 / sides as f64;
+    (0..sides).map(|i| [radius * turn(i).cos(), y, radius * turn(i).sin()]).collect()
+}
+
+/// Triangles between two rings and over both ends.
+fn between(low: &[[f64; 3]], high: &[[f64; 3]]) -> Vec<[[f64; 3]; 3]> {
+    let ends = [[0.0, low[0][1], 0.0], [0.0, high[0][1], 0.0]];
+    let side = |i: usize| {
+        let next = (i + 1) % low.len();
+        let (a, b, c, d) = (low[i], low[next], high[i], high[next]);
+        [[a, b, c], [b, c, d], [ends[0], a, b], [ends[1], c, d]]
+    };
+    (0..low.len()).flat_map(side).collect()
+}
+
+/// Distances of solids with faces against the nearest of many points on their triangles.
+fn faces_are_at_their_distance() -> Result<(), Failed> {
+    let square = ring(4, 0.7 * SQRT_2, -0.6).into_iter();
+    let eighth = std::f64::consts::FRAC_1_SQRT_2;
+    let square = square.map(|[x, y, z]| [eighth * (x - z), y, eighth * (x + z)]).collect::<Vec<_>>();
+    let equator = ring(4, 0.9, 0.0);
+    let tips = |y: f64| vec![[0.0, y, 0.0]; 4];
+    let mut octahedron = between(&equator, &tips(0.9));
+    octahedron.extend(between(&equator, &tips(-0.9)));
+    // The equator's own disk is inside.
+    octahedron.retain(|triangle| triangle.iter().any(|corner| corner[1] != 0.0));
+    let solids = [
+        ("pyramid(0.7, 0.6)", between(&square, &tips(0.6))),
+        ("octahedron(0.9)", octahedron),
+        ("prism(3, 0.8, 0.5)", between(&ring(3, 0.8, -0.5), &ring(3, 0.8, 0.5))),
+        ("prism(5, 0.6, 0.9)", between(&ring(5, 0.6, -0.9), &ring(5, 0.6, 0.9))),
+        ("cone(0.7, 0.5, top: 0.3)", between(&ring(200, 0.7, -0.5), &ring(200, 0.3, 0.5))),
+        ("cone(0, 0.5, top: 0.7)", between(&ring(200, 0.0, -0.5), &ring(200, 0.7, 0.5))),
+    ];
+    for (shape, triangles) in solids {
+        let program = compile("shape.vol", &format!("object o {{ shape: {shape} }}"))?;
+        let frame = frame(&program, 0.0, [8, 8])?;
+        let function = program.module.function(program.objects[0].distance);
+        for p in grid().step_by(977) {
+            let found = vol_compiler::reference::evaluate(function, &p, &frame.uniforms, &frame.curves)[0];
+            let nearest = nearest(p, &triangles);
+            // The samples are at most 0.02 apart, so the nearest is at most that much too far.
+            let right = found.abs() <= nearest + 1e-3 && found.abs() >= nearest - 0.02;
+            ensure(right, || format!("{shape} at {p:?}: {found}, not {nearest}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// Distance to the nearest of the points `(i a + j b + k c) / PARTS` of triangles.
+fn nearest(p: [f64; 3], triangles: &[[[f64; 3]; 3]]) -> f64 {
+    const PARTS: usize = 100;
+    let mut least = f64::INFINITY;
+    for [a, b, c] in triangles {
+        for i in 0..=PARTS {
+            for j in 0..=PARTS - i {
+                let (u, v) = (i as f64 / PARTS as f64, j as f64 / PARTS as f64);
+                let off = |axis: usize| u * a[axis] + v * b[axis] + (1.0 - u - v) * c[axis] - p[axis];
+                least = least.min(off(0).powi(2) + off(1).powi(2) + off(2).powi(2));
+            }
+        }
+    }
+    least.sqrt()
 }

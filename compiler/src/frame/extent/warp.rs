@@ -69,7 +69,7 @@ pub(super) fn around(child: Solid, count: u32, overlap: u32, span: Span) -> Resu
     if !asks_all && angle > sector * (0.5 + f64::from(overlap)) + TIE {
         let sectors = (angle / sector - 0.5).ceil();
         let message = format!(
-            "this shape is wider than its sector: seen from the y axis it reaches {:.0} degrees off the x axis, a sector {:.0}",
+            "this shape is wider than its sector: seen from the y axis it reaches {:.0} degrees off the x axis, half a sector {:.0}",
             angle.to_degrees(),
             (0.5 * sector).to_degrees()
         );

@@ -326,6 +326,10 @@ fn pyramid_distance(graph: &mut Graph, p: [ValueId; 3], half: ValueId, half_heig
     let slope = graph.length(&[half, height]);
     let safe = divisor(graph, slope);
     let (sine, cosine) = (graph.div(height, safe), graph.div(half, safe));
+    // A pyramid without size is a point: any axes will do.
+    let one = graph.number(1.0);
+    let vanishes = graph.apply(Op::LessEqual, &[slope, zero]);
+    let sine = graph.select(vanishes, one, sine);
     let minus = graph.apply(Op::Neg, &[cosine]);
     let from_base = [graph.sub(x, half), y];
     let s = graph.dot(&[minus, sine], &from_base);
@@ -337,7 +341,7 @@ fn pyramid_distance(graph: &mut Graph, p: [ValueId; 3], half: ValueId, half_heig
     let beside = graph.min(base, edge);
     let (left, right) = (graph.mul(z, slope), graph.sub(slope, s));
     let right = graph.mul(half, right);
-    let below_edge = graph.apply(Op::LessEqual, &[left, right]);
+    let below_edge = graph.apply(Op::Less, &[left, right]);
     let above_base = graph.apply(Op::LessEqual, &[zero, s]);
     let within = graph.apply(Op::And, &[below_edge, above_base]);
     let beside = graph.select(within, zero, beside);

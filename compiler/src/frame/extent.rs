@@ -132,7 +132,7 @@ impl Space<'_> {
             Extent::Field { half, slope, span } => {
                 let half = self.at3(*half);
                 let bounds = ordered(half.map(|c| -c), half);
-                let steepness = self.steepest(bounds, *slope).ok_or_else(|| unbounded(*span))?;
+                let steepness = self.steepest(bounds, *slope).ok_or_else(|| unbounded("field", *span))?;
                 Solid { steepness: steepness.max(1.0), ..exact(bounds) }
             }
             Extent::Displaced { child, amount, slope, span } => {
@@ -244,11 +244,11 @@ impl Space<'_> {
             reach = self.interval(amount, &grid(near, 1)[0])[0].magnitude();
             let close = reach <= half_diagonal(child.bounds);
             if !close {
-                return Err(unbounded(span));
+                return Err(unbounded("displacement", span));
             }
         }
         let solid = child.grown(reach);
-        let steepest = self.steepest(solid.bounds, slope).ok_or_else(|| unbounded(span))?;
+        let steepest = self.steepest(solid.bounds, slope).ok_or_else(|| unbounded("displacement", span))?;
         Ok(Solid { steepness: solid.steepness + steepest, ..solid })
     }
 
@@ -286,8 +286,8 @@ impl Space<'_> {
     }
 }
 
-fn unbounded(span: Span) -> Diagnostic {
-    let message = "no bound can be given for this displacement, so its surface cannot be marched safely";
+fn unbounded(what: &str, span: Span) -> Diagnostic {
+    let message = format!("no bound can be given for this {what}, so its surface cannot be marched safely");
     Diagnostic::error("E0501", message, span, "its value or its slope is not bounded near the shape")
         .with_help("use functions with a bounded slope, such as sin or perlin, or keep the values in range with clamp")
 }

@@ -103,7 +103,7 @@ impl Copies {
 }
 
 impl Row {
-    fn asked(&self, overlap: u32) -> u32 {
+    fn asked(self, overlap: u32) -> u32 {
         let few = self.count > 0 && self.count <= neighbours(overlap);
         let own_cell = self.symmetric && overlap == 0;
         if few {
@@ -116,7 +116,7 @@ impl Row {
     }
 
     /// The coordinate in each copy that is asked.
-    fn to_child(&self, graph: &mut Graph, x: ValueId, overlap: u32) -> Vec<ValueId> {
+    fn to_child(self, graph: &mut Graph, x: ValueId, overlap: u32) -> Vec<ValueId> {
         let (zero, half) = (graph.number(0.0), graph.number(0.5));
         let least = graph.number(1e-6);
         let period = graph.max(self.period, least);

@@ -38,6 +38,7 @@ fn program(objects: usize, media: usize) -> Program {
     Program {
         module,
         params: Vec::new(),
+        measures: Vec::new(),
         curves: Vec::new(),
         objects: vec![object; objects],
         media: vec![medium; media],

@@ -151,6 +151,7 @@ impl World {
     /// Nothing, seen from `origin` along -z; the picture's half height is `slope` at distance 1.
     pub(super) fn new(origin: [f32; 3], slope: f32) -> Self {
         let program = Program {
+            measures: Vec::new(),
             module: Module::default(),
             params: Vec::new(),
             curves: Vec::new(),

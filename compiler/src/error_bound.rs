@@ -15,8 +15,9 @@
 pub(crate) mod nasty;
 
 use crate::curve::Quadratic;
-use crate::ir::{Function, Inst};
-use crate::ops::{self, Context, MAX_RESULTS, Results};
+use crate::ir::walk::{self, Domain};
+use crate::ir::{Function, ValueId};
+use crate::ops::{self, Context, MAX_RESULTS, Op, Results};
 
 /// A number and how far its f32 form can be from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,28 +45,77 @@ pub fn evaluate(
     uniforms: &[f64],
     curves: &[Vec<Quadratic>],
 ) -> Vec<Bounded> {
-    let mut values: Vec<Results<Bounded>> = Vec::with_capacity(function.insts.len());
-    for inst in &function.insts {
-        let results = match inst {
-            Inst::Constant(number) => first(ops::from_f32(number.0)),
-            Inst::Boolean(truth) => first(Bounded { value: f64::from(u8::from(*truth)), error: 0.0 }),
-            Inst::Input(index) => first(ops::from_f32(f64::from(inputs[*index as usize]))),
-            Inst::Uniform(index) => first(ops::from_f32(uniforms[*index as usize])),
-            Inst::Extract(tuple, index) => first(values[tuple.index()][*index as usize]),
-            Inst::Apply { op, data, args } => {
-                let operands: Vec<Bounded> = args.iter().map(|a| values[a.index()][0]).collect();
-                apply(ops::operation(*op), &operands, Context { data: *data, curves })
-            }
-        };
-        values.push(results);
-    }
-    function.outputs.iter().map(|output| values[output.index()][0]).collect()
+    let inputs: Vec<Bounded> = inputs.iter().map(|&input| ops::from_f32(f64::from(input))).collect();
+    walk::walk(&mut Errors { uniforms, curves }, function, &inputs)
 }
 
-fn first(result: Bounded) -> Results<Bounded> {
-    let mut results = [NOTHING; MAX_RESULTS];
-    results[0] = result;
-    results
+/// Numbers with their errors.
+struct Errors<'a> {
+    uniforms: &'a [f64],
+    curves: &'a [Vec<Quadratic>],
+}
+
+impl Domain for Errors<'_> {
+    type Value = Bounded;
+
+    fn constant(&mut self, number: f64) -> Bounded {
+        ops::from_f32(number)
+    }
+
+    fn truth(&mut self, truth: bool) -> Bounded {
+        Bounded { value: f64::from(u8::from(truth)), error: 0.0 }
+    }
+
+    fn uniform(&mut self, index: usize) -> Bounded {
+        ops::from_f32(self.uniforms[index])
+    }
+
+    fn apply(&mut self, op: Op, data: u32, _: &[ValueId], operands: &[Bounded]) -> Results<Bounded> {
+        apply(ops::operation(op), operands, Context { data, curves: self.curves })
+    }
+
+    /// A device goes through the same sequence of states within their errors, but where a condition can
+    /// fall either way it may stop at another one: then the error is the distance to that as well.
+    fn repeat(&mut self, most: u32, body: &Function, operands: &[Bounded]) -> Vec<Bounded> {
+        let state = body.state();
+        let mut inputs = operands.to_vec();
+        // The state at which exact arithmetic stops, and those at which a device may stop.
+        let (mut exact, mut possible): (Option<Vec<Bounded>>, Vec<Vec<Bounded>>) = (None, Vec::new());
+        let mut left = most;
+        while left > 0 {
+            let (next, goes_on) = walk::step(self, body, &inputs);
+            let (stops, undecided) = (goes_on.value == 0.0, goes_on.error != 0.0);
+            if stops && exact.is_none() {
+                exact = Some(inputs[..state].to_vec());
+            }
+            if stops || undecided {
+                possible.push(inputs[..state].to_vec());
+            }
+            // If a device may be anywhere, further states change nothing.
+            let lost = exact.is_some() && inputs[..state].iter().all(|number| !number.error.is_finite());
+            if !undecided && stops || undecided && lost {
+                break;
+            }
+            inputs[..state].copy_from_slice(&next);
+            left -= 1;
+        }
+        inputs.truncate(state);
+        if left == 0 {
+            possible.push(inputs.clone());
+        }
+        let exact = exact.unwrap_or(inputs);
+        let farthest = |i: usize| {
+            let distances =
+                possible.iter().map(|state| (state[i].value - exact[i].value).abs() + state[i].error);
+            distances.fold(0.0, farther)
+        };
+        (0..state).map(|i| Bounded { value: exact[i].value, error: farthest(i) }).collect()
+    }
+}
+
+/// The larger of two distances; one that is no number counts as infinite.
+fn farther(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
 /// One operation: its meaning and its error rule.

@@ -2,7 +2,8 @@
 //!
 //! A [`Function`] is a list of instructions in SSA form. Operands always stand before their users,
 //! vectors are already split into scalars, and there are no branches: both sides of an `if` are
-//! computed and [`Op::Select`] picks one. Text form, one instruction a line:
+//! computed and [`Op::Select`] picks one. The one thing that repeats is [`Inst::Loop`], whose body is
+//! a function of its own. Text form, one instruction a line:
 //!
 //! ```text
 //! fn distance:ball(3) {
@@ -13,7 +14,15 @@
 //!   %4 = perlin[0] %0 %1 %2
 //!   %5 = closest[1] %0 %1 %2
 //!   %6 = extract %5 3
-//!   return %4 %6
+//!   %7 = loop 8 %0 %1 {
+//!     %0 = input 0
+//!     %1 = input 1
+//!     %2 = mul %0 %1
+//!     %3 = less %0 %1
+//!     return %2 %3
+//!   }
+//!   %8 = extract %7 0
+//!   return %4 %8
 //! }
 //! ```
 //!
@@ -23,9 +32,17 @@
 pub mod graph;
 pub mod text;
 pub mod verify;
+pub(crate) mod walk;
 
 use crate::ops::{self, Op, Ty};
 use std::fmt;
+use std::sync::Arc;
+
+/// Most steps that a loop takes.
+pub const MAX_STEPS: u32 = 1024;
+
+/// Most numbers in the state of a loop: 16 of a scene and a counter, with three derivatives each.
+pub const MAX_STATE: usize = 17 * 4;
 
 /// A value of a function: the index of the instruction that computes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -83,8 +100,21 @@ pub enum Inst {
         /// Operands, as many as the table says.
         args: Vec<ValueId>,
     },
-    /// One result of an operation that has several.
+    /// One result of an operation that has several, or of a loop.
     Extract(ValueId, u32),
+    /// A state of numbers, replaced by the next one at most so many times. Its results are the last
+    /// state, however short, and are read by [`Inst::Extract`].
+    Loop {
+        /// Steps, at most [`MAX_STEPS`].
+        most: u32,
+        /// Next state and whether to go there, from a state and constants of the loop. Inputs: the
+        /// operands, the first of which are replaced by the state. Outputs: the numbers of the next
+        /// state, then a truth value, both computed from the state before the step; where it is
+        /// false, that state is the last. Reads no uniforms.
+        body: Arc<Function>,
+        /// The first state, then what else the body reads.
+        args: Vec<ValueId>,
+    },
 }
 
 impl Inst {
@@ -93,8 +123,20 @@ impl Inst {
     pub fn operands(&self) -> &[ValueId] {
         match self {
             Self::Constant(_) | Self::Boolean(_) | Self::Input(_) | Self::Uniform(_) => &[],
-            Self::Apply { args, .. } => args,
+            Self::Apply { args, .. } | Self::Loop { args, .. } => args,
             Self::Extract(tuple, _) => std::slice::from_ref(tuple),
+        }
+    }
+
+    /// How many results [`Inst::Extract`] reads of this; nothing for what is one value.
+    #[must_use]
+    pub fn parts(&self) -> Option<usize> {
+        match self {
+            Self::Constant(_) | Self::Boolean(_) | Self::Input(_) | Self::Uniform(_) | Self::Extract(..) => {
+                None
+            }
+            Self::Apply { op, .. } => Some(ops::operation(*op).results.len()).filter(|&results| results > 1),
+            Self::Loop { body, .. } => Some(body.state()),
         }
     }
 
@@ -107,12 +149,17 @@ impl Inst {
                 Self::Apply { op: *op, data: *data, args: args.iter().map(|&a| rename(a)).collect() }
             }
             Self::Extract(tuple, index) => Self::Extract(rename(*tuple), *index),
+            Self::Loop { most, body, args } => Self::Loop {
+                most: *most,
+                body: Arc::clone(body),
+                args: args.iter().map(|&a| rename(a)).collect(),
+            },
         }
     }
 }
 
 /// A pure function from numbers to numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Function {
     /// What it computes, for people: `distance:ball`, `scatter:cloud`.
     pub name: String,
@@ -120,11 +167,17 @@ pub struct Function {
     pub inputs: u32,
     /// Instructions; operands earlier.
     pub insts: Vec<Inst>,
-    /// Results, all of type [`Ty::Number`].
+    /// Results, all of type [`Ty::Number`] but for the last of the body of a loop.
     pub outputs: Vec<ValueId>,
 }
 
 impl Function {
+    /// Numbers in the state, if this is the body of a loop.
+    #[must_use]
+    pub fn state(&self) -> usize {
+        self.outputs.len().saturating_sub(1)
+    }
+
     /// Type of a value; an operation with several results has the type of its first, which only
     /// [`Inst::Extract`] may read.
     #[must_use]
@@ -133,7 +186,7 @@ impl Function {
             Inst::Constant(_) | Inst::Input(_) | Inst::Uniform(_) => Ty::Number,
             Inst::Boolean(_) => Ty::Bool,
             Inst::Apply { op, .. } => ops::operation(*op).results[0],
-            Inst::Extract(..) => Ty::Number,
+            Inst::Extract(..) | Inst::Loop { .. } => Ty::Number,
         }
     }
 }

@@ -16,13 +16,25 @@ pub mod dce;
 pub mod fold;
 pub mod gradient;
 
-use crate::ir::{Function, Module, verify};
+use crate::ir::{Function, Inst, Module, verify};
+use std::sync::Arc;
 
 /// A pass; true if it changed the function.
 pub type Pass = fn(&mut Function) -> bool;
 
 /// The passes in the order in which they run.
 pub const PIPELINE: &[(&str, Pass)] = &[("fold", fold::fold), ("cse", cse::cse), ("dce", dce::dce)];
+
+/// Runs a pass on the bodies of a function's loops; true if one changed.
+fn in_bodies(function: &mut Function, pass: Pass) -> bool {
+    let mut changed = false;
+    for inst in &mut function.insts {
+        if let Inst::Loop { body, .. } = inst {
+            changed |= pass(Arc::make_mut(body));
+        }
+    }
+    changed
+}
 
 /// Runs the pipeline on every function, the frame function included.
 pub fn run(module: &mut Module) {
@@ -82,7 +94,7 @@ mod tests {
             let shape = random::Shape::default();
             let mut module = Module::default();
             module.frame.inputs = shape.uniforms;
-            module.frame.insts = (0..shape.uniforms).map(crate::ir::Inst::Input).collect();
+            module.frame.insts = (0..shape.uniforms).map(Inst::Input).collect();
             module.frame.outputs = (0..shape.uniforms).map(crate::ir::ValueId).collect();
             module.functions.push(random::function(seed, &shape));
             run(&mut module);

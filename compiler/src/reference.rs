@@ -9,9 +9,10 @@ pub mod curve;
 pub mod noise;
 
 use crate::curve::Quadratic;
-use crate::ir::{Function, Inst};
+use crate::ir::walk::{self, Domain};
+use crate::ir::{Function, ValueId};
 use crate::ops::interval::Interval;
-use crate::ops::{self, Context, MAX_RESULTS, Op, Results};
+use crate::ops::{self, Context, Op, Results};
 
 /// Results of a function at one point.
 ///
@@ -27,28 +28,44 @@ pub fn evaluate(
     uniforms: &[f64],
     curves: &[Vec<Quadratic>],
 ) -> Vec<f64> {
-    let mut values: Vec<Results<f64>> = Vec::with_capacity(function.insts.len());
-    for inst in &function.insts {
-        let results = match inst {
-            Inst::Constant(number) => [number.0; MAX_RESULTS],
-            Inst::Boolean(truth) => [f64::from(u8::from(*truth)); MAX_RESULTS],
-            Inst::Input(index) => [inputs[*index as usize]; MAX_RESULTS],
-            Inst::Uniform(index) => [uniforms[*index as usize]; MAX_RESULTS],
-            Inst::Extract(tuple, index) => [values[tuple.index()][*index as usize]; MAX_RESULTS],
-            Inst::Apply { op, data, args } => {
-                let operands: Vec<f64> = args.iter().map(|a| values[a.index()][0]).collect();
-                (ops::operation(*op).meaning)(&operands, Context { data: *data, curves })
-            }
-        };
-        values.push(results);
+    walk::walk(&mut Numbers { uniforms, curves }, function, inputs)
+}
+
+/// Exact but for rounding in f64.
+struct Numbers<'a> {
+    uniforms: &'a [f64],
+    curves: &'a [Vec<Quadratic>],
+}
+
+impl Domain for Numbers<'_> {
+    type Value = f64;
+
+    fn constant(&mut self, number: f64) -> f64 {
+        number
     }
-    function.outputs.iter().map(|output| values[output.index()][0]).collect()
+
+    fn truth(&mut self, truth: bool) -> f64 {
+        f64::from(u8::from(truth))
+    }
+
+    fn uniform(&mut self, index: usize) -> f64 {
+        self.uniforms[index]
+    }
+
+    fn apply(&mut self, op: Op, data: u32, _: &[ValueId], operands: &[f64]) -> Results<f64> {
+        (ops::operation(op).meaning)(operands, Context { data, curves: self.curves })
+    }
+
+    fn repeat(&mut self, most: u32, body: &Function, operands: &[f64]) -> Vec<f64> {
+        walk::repeat(self, most, body, operands, |goes_on| goes_on != 0.0)
+    }
 }
 
 /// Bounds on the results of a function over all inputs in the given intervals.
 ///
 /// * returns: contains [`evaluate`] for every point of the box; seldom the tightest bounds, since each
-///   instruction forgets which operands vary together (but a product of a value with itself is a square)
+///   instruction forgets which operands vary together (but a product of a value with itself is a square),
+///   and a loop that may stop at several steps gives the hull of the states at all of them
 ///
 /// # Panics
 /// If there are fewer inputs or uniforms than the function reads.
@@ -59,23 +76,66 @@ pub fn interval(
     uniforms: &[f64],
     curves: &[Vec<Quadratic>],
 ) -> Vec<Interval> {
-    let mut values: Vec<Results<Interval>> = Vec::with_capacity(function.insts.len());
-    for inst in &function.insts {
-        let results = match inst {
-            Inst::Constant(number) => [Interval::point(number.0); MAX_RESULTS],
-            Inst::Boolean(truth) => [Interval::point(f64::from(u8::from(*truth))); MAX_RESULTS],
-            Inst::Input(index) => [inputs[*index as usize]; MAX_RESULTS],
-            Inst::Uniform(index) => [Interval::point(uniforms[*index as usize]); MAX_RESULTS],
-            Inst::Extract(tuple, index) => [values[tuple.index()][*index as usize]; MAX_RESULTS],
-            Inst::Apply { op: Op::Mul, args, .. } if args[0] == args[1] => {
-                [values[args[0].index()][0].square(); MAX_RESULTS]
-            }
-            Inst::Apply { op, data, args } => {
-                let operands: Vec<Interval> = args.iter().map(|a| values[a.index()][0]).collect();
-                (ops::operation(*op).interval)(&operands, Context { data: *data, curves })
-            }
-        };
-        values.push(results);
-    }
-    function.outputs.iter().map(|output| values[output.index()][0]).collect()
+    walk::walk(&mut Bounds { uniforms, curves }, function, inputs)
 }
+
+/// Intervals that contain the numbers.
+struct Bounds<'a> {
+    uniforms: &'a [f64],
+    curves: &'a [Vec<Quadratic>],
+}
+
+impl Domain for Bounds<'_> {
+    type Value = Interval;
+
+    fn constant(&mut self, number: f64) -> Interval {
+        Interval::point(number)
+    }
+
+    fn truth(&mut self, truth: bool) -> Interval {
+        Interval::point(f64::from(u8::from(truth)))
+    }
+
+    fn uniform(&mut self, index: usize) -> Interval {
+        Interval::point(self.uniforms[index])
+    }
+
+    fn apply(&mut self, op: Op, data: u32, args: &[ValueId], operands: &[Interval]) -> Results<Interval> {
+        if op == Op::Mul && args[0] == args[1] {
+            return [operands[0].square(); ops::MAX_RESULTS];
+        }
+        (ops::operation(op).interval)(operands, Context { data, curves: self.curves })
+    }
+
+    fn repeat(&mut self, most: u32, body: &Function, operands: &[Interval]) -> Vec<Interval> {
+        let state = body.state();
+        let mut inputs = operands.to_vec();
+        // Hull of the states at which some point may have stopped.
+        let mut stopped: Option<Vec<Interval>> = None;
+        for _ in 0..most {
+            let (next, goes_on) = walk::step(self, body, &inputs);
+            if goes_on.contains(0.0) {
+                stopped = Some(hulls(stopped, &inputs[..state]));
+            }
+            if goes_on == Interval::point(0.0) {
+                return stopped.unwrap_or_default();
+            }
+            // What maps to itself stays for all further steps.
+            if next == inputs[..state] {
+                break;
+            }
+            inputs[..state].copy_from_slice(&next);
+        }
+        hulls(stopped, &inputs[..state])
+    }
+}
+
+fn hulls(known: Option<Vec<Interval>>, state: &[Interval]) -> Vec<Interval> {
+    match known {
+        None => state.to_vec(),
+        Some(known) => known.iter().zip(state).map(|(a, &b)| a.hull(b)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

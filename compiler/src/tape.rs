@@ -16,9 +16,13 @@
 //! | [`TapeOp::Constant`] | nothing; truth values are 0 and 1 | one register |
 //! | [`TapeOp::Input`], [`TapeOp::Uniform`] | an argument, an output of the frame function | one register |
 //! | [`TapeOp::Apply`] | as many registers as the operation has operands | consecutive registers, one per result |
+//! | [`TapeOp::Loop`] | as many registers as the loop has operands | consecutive registers, one per number of the state |
 //!
 //! A result may have the register of an operand that is read for the last time. Values that no
 //! output needs are left out.
+//!
+//! The body of a loop is a tape with registers of its own, of which the first are its inputs: they keep
+//! their values to the end of a step, and an interpreter replaces the state between steps.
 
 mod alloc;
 
@@ -75,6 +79,34 @@ pub enum TapeOp {
         /// Registers of the operands; entries past their number mean nothing.
         args: [Register; MAX_OPERANDS],
     },
+    /// A loop.
+    Loop {
+        /// Which of the tape's loops.
+        index: u32,
+        /// First register to write, one per number of the state.
+        to: Register,
+    },
+}
+
+/// A loop of a tape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TapeLoop {
+    /// Steps at most.
+    pub most: u32,
+    /// Registers of the tape around it that hold the first state and then what else the body reads;
+    /// they go to the first registers of the body.
+    pub args: Vec<Register>,
+    /// One step: the first registers hold its inputs, which it does not change; its outputs are the
+    /// next state and then whether to go there.
+    pub body: Tape,
+}
+
+impl TapeLoop {
+    /// Numbers in the state.
+    #[must_use]
+    pub fn state(&self) -> usize {
+        self.body.outputs.len() - 1
+    }
 }
 
 /// A function ready to be interpreted.
@@ -88,6 +120,8 @@ pub struct Tape {
     pub registers: u32,
     /// The steps in order.
     pub ops: Vec<TapeOp>,
+    /// The loops among them.
+    pub loops: Vec<TapeLoop>,
 }
 
 impl Tape {
@@ -95,6 +129,14 @@ impl Tape {
     #[must_use]
     pub fn new(function: &Function) -> Self {
         alloc::allocate(function)
+    }
+
+    /// Number of registers with those of loops: each has its own and a copy of its state, above those
+    /// of the tape around it.
+    #[must_use]
+    pub fn all_registers(&self) -> usize {
+        let inside = self.loops.iter().map(|inner| inner.body.all_registers() + inner.state()).max();
+        self.registers as usize + inside.unwrap_or(0)
     }
 }
 
@@ -108,53 +150,78 @@ pub fn rounded(constant: f64) -> f32 {
 mod tests {
     use super::*;
     use crate::ir::verify::random;
-    use crate::ir::{Inst, text};
+    use crate::ir::walk::{self, Domain};
+    use crate::ir::{ValueId, text};
     use crate::ops::{self, Context};
 
     const UNIFORMS: [f64; 4] = [0.5, -2.0, 3.25, 100.0];
 
-    /// Values of all outputs by the table's meaning, straight from the function.
-    fn direct(function: &Function, inputs: &[f64]) -> Vec<f64> {
-        let mut values: Vec<ops::Results<f64>> = Vec::new();
-        for inst in &function.insts {
-            let single = |x: f64| [x, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let result = match inst {
-                Inst::Constant(number) => single(f64::from(rounded(number.0))),
-                Inst::Boolean(truth) => single(f64::from(u8::from(*truth))),
-                Inst::Input(i) => single(inputs[*i as usize]),
-                Inst::Uniform(i) => single(UNIFORMS[*i as usize]),
-                Inst::Extract(tuple, i) => single(values[tuple.index()][*i as usize]),
-                Inst::Apply { op, data, args } => {
-                    let args: Vec<f64> = args.iter().map(|a| values[a.index()][0]).collect();
-                    (ops::operation(*op).meaning)(&args, Context { data: *data, curves: &[] })
-                }
-            };
-            values.push(result);
+    /// The table's meaning, with constants rounded as on a tape.
+    struct Direct;
+
+    impl Domain for Direct {
+        type Value = f64;
+
+        fn constant(&mut self, number: f64) -> f64 {
+            f64::from(rounded(number))
         }
-        function.outputs.iter().map(|v| values[v.index()][0]).collect()
+
+        fn truth(&mut self, truth: bool) -> f64 {
+            f64::from(u8::from(truth))
+        }
+
+        fn uniform(&mut self, index: usize) -> f64 {
+            UNIFORMS[index]
+        }
+
+        fn apply(&mut self, op: Op, data: u32, _: &[ValueId], operands: &[f64]) -> ops::Results<f64> {
+            (ops::operation(op).meaning)(operands, Context { data, curves: &[] })
+        }
+
+        fn repeat(&mut self, most: u32, body: &Function, operands: &[f64]) -> Vec<f64> {
+            walk::repeat(self, most, body, operands, |goes_on| goes_on != 0.0)
+        }
     }
 
-    /// The same from the tape. Registers start empty; results past the last free or unread ones
-    /// are written all the same, so that a clobbered register shows.
-    fn by_tape(tape: &Tape, inputs: &[f64]) -> Vec<f64> {
+    /// The same from the tape. Registers start empty, or with the inputs of a loop's body; results past
+    /// the last free or unread ones are written all the same, so that a clobbered register shows.
+    fn by_tape(tape: &Tape, inputs: &[f64], inside: bool) -> Vec<f64> {
         let mut registers: Vec<Option<f64>> = vec![None; tape.registers as usize];
+        if inside {
+            registers[..inputs.len()].copy_from_slice(&inputs.iter().map(|&x| Some(x)).collect::<Vec<_>>());
+        }
         for step in &tape.ops {
+            let read = |r: &Register| registers[r.index()].expect("reads a register that was written");
             match *step {
                 TapeOp::Constant { to, value } => registers[to.index()] = Some(f64::from(value)),
                 TapeOp::Input { to, index } => registers[to.index()] = Some(inputs[index as usize]),
                 TapeOp::Uniform { to, index } => registers[to.index()] = Some(UNIFORMS[index as usize]),
                 TapeOp::Apply { op, data, to, args } => {
                     let row = ops::operation(op);
-                    let read =
-                        |r: &Register| registers[r.index()].expect("reads a register that was written");
                     let args: Vec<f64> = args[..row.args.len()].iter().map(read).collect();
                     let results = (row.meaning)(&args, Context { data, curves: &[] });
                     for (i, _) in row.results.iter().enumerate() {
                         registers[to.index() + i] = Some(results[i]);
                     }
                 }
+                TapeOp::Loop { index, to } => {
+                    let repeated = &tape.loops[index as usize];
+                    let mut state: Vec<f64> = repeated.args.iter().map(read).collect();
+                    for _ in 0..repeated.most {
+                        let next = by_tape(&repeated.body, &state, true);
+                        if next[repeated.state()] == 0.0 {
+                            break;
+                        }
+                        state[..repeated.state()].copy_from_slice(&next[..repeated.state()]);
+                    }
+                    for i in 0..repeated.state() {
+                        registers[to.index() + i] = Some(state[i]);
+                    }
+                }
             }
         }
+        let unchanged = |i: usize| registers[i].map(f64::to_bits) == Some(inputs[i].to_bits());
+        assert!(!inside || (0..inputs.len()).all(unchanged), "a body keeps its inputs");
         tape.outputs.iter().map(|r| registers[r.index()].expect("outputs were written")).collect()
     }
 
@@ -166,7 +233,8 @@ mod tests {
             let tape = Tape::new(&function);
             let inputs = [0.3, -1.75, 12.5];
             let bits = |values: Vec<f64>| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            let (expected, found) = (direct(&function, &inputs), by_tape(&tape, &inputs));
+            let (expected, found) =
+                (walk::walk(&mut Direct, &function, &inputs), by_tape(&tape, &inputs, false));
             assert_eq!(bits(found), bits(expected), "{}\n{tape:?}", text::print_function(&function));
         }
     }

@@ -20,8 +20,8 @@
 //!
 //! A function gives `f32`, `vec2f`, `vec3f` or `vec4f` for one to four outputs, else a structure
 //! `VolOut10 { v0: f32, … }` that all functions with so many outputs share. Every intermediate has a
-//! name, everything is in parentheses, and there is neither a branch nor `&&` or `||`: drivers take
-//! exponential time over those, and Tint refuses what naga lets pass.
+//! name, everything is in parentheses, and there is neither a branch (but for the ends of loops) nor
+//! `&&` or `||`: drivers take exponential time over those, and Tint refuses what naga lets pass.
 
 mod expr;
 pub mod layout;

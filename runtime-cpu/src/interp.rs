@@ -11,18 +11,20 @@
 //! an operation is shared and its loop ([`batch`]) vectorises. The results of a point depend on that
 //! point alone: bit for bit the same in any company and any batch size.
 //!
-//! Truth values are 0 and 1 in registers like all others.
+//! Truth values are 0 and 1 in registers like all others. A loop goes on until no point of the batch
+//! does; points that have stopped keep their state.
 
 pub(crate) mod batch;
 
 use batch::Lanes;
 use std::array;
+use std::ops::Range;
 use vol_compiler::curve::CurveTable;
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::{FunctionId, Module};
 use vol_compiler::ops::MAX_RESULTS;
 use vol_compiler::program::Program;
-use vol_compiler::tape::{Tape, TapeOp};
+use vol_compiler::tape::{Register, Tape, TapeLoop, TapeOp};
 
 /// Points that go through a tape together.
 pub const LANES: usize = 64;
@@ -74,7 +76,7 @@ impl<'a> Evaluator<'a> {
     /// An evaluator that knows only what functions can read of a frame.
     #[must_use]
     pub fn of_parts(tapes: &'a Tapes, uniforms: &'a [f32], curves: &'a [CurveTable]) -> Self {
-        let most = tapes.tapes.iter().map(|tape| tape.registers as usize).max().unwrap_or(0);
+        let most = tapes.tapes.iter().map(Tape::all_registers).max().unwrap_or(0);
         let registers = (0..most).map(|_| Box::default()).collect();
         Self { tapes, uniforms, curves, registers, results: array::from_fn(|_| Box::default()) }
     }
@@ -97,9 +99,8 @@ impl<'a> Evaluator<'a> {
         assert!(lengths.into_iter().all(|length| length == count), "slices differ in length");
         for start in (0..count).step_by(LANES) {
             let points = start..count.min(start + LANES);
-            for step in &tape.ops {
-                self.step(step, inputs, points.clone());
-            }
+            let frame = Registers { first: 0, above: tape.registers as usize };
+            self.run(tape, frame, inputs, &points);
             for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
                 let values = &self.registers[register.index()].0;
                 output[points.clone()].copy_from_slice(&values[..points.len()]);
@@ -107,26 +108,79 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    fn step(&mut self, step: &TapeOp, inputs: &[&[f32]], points: std::ops::Range<usize>) {
+    /// Walks through a tape whose registers start at `own.first`.
+    fn run(&mut self, tape: &'a Tape, own: Registers, inputs: &[&[f32]], points: &Range<usize>) {
         let n = points.len();
-        match *step {
-            TapeOp::Constant { to, value } => {
-                self.registers[to.index()].0[..n].fill(value);
-            }
-            TapeOp::Uniform { to, index } => {
-                self.registers[to.index()].0[..n].fill(self.uniforms[index as usize]);
-            }
-            TapeOp::Input { to, index } => {
-                self.registers[to.index()].0[..n].copy_from_slice(&inputs[index as usize][points]);
-            }
-            TapeOp::Apply { op, data, to, args } => {
-                let args = args.map(|register| &self.registers[register.index()].0[..n]);
-                let written = batch::apply(op, data, &args, &mut self.results, self.curves);
-                let registers = &mut self.registers[to.index()..to.index() + written];
-                registers.swap_with_slice(&mut self.results[..written]);
+        let at = |register: Register| own.first + register.index();
+        for step in &tape.ops {
+            match *step {
+                TapeOp::Constant { to, value } => {
+                    self.registers[at(to)].0[..n].fill(value);
+                }
+                TapeOp::Uniform { to, index } => {
+                    self.registers[at(to)].0[..n].fill(self.uniforms[index as usize]);
+                }
+                TapeOp::Input { to, index } => {
+                    self.registers[at(to)].0[..n].copy_from_slice(&inputs[index as usize][points.clone()]);
+                }
+                TapeOp::Apply { op, data, to, args } => {
+                    let args = args.map(|register| &self.registers[at(register)].0[..n]);
+                    let written = batch::apply(op, data, &args, &mut self.results, self.curves);
+                    let registers = &mut self.registers[at(to)..at(to) + written];
+                    registers.swap_with_slice(&mut self.results[..written]);
+                }
+                TapeOp::Loop { index, to } => {
+                    let repeated = &tape.loops[index as usize];
+                    self.repeat(repeated, own, n);
+                    for i in 0..repeated.state() {
+                        self.registers.swap(at(to) + i, own.above + i);
+                    }
+                }
             }
         }
     }
+
+    /// Runs a loop for `n` points; its last state is in the first registers above those of `outer`.
+    fn repeat(&mut self, repeated: &'a TapeLoop, outer: Registers, n: usize) {
+        let (body, state, first) = (&repeated.body, repeated.state(), outer.above);
+        // Above the registers of the body the next state is put together.
+        let next = first + body.registers as usize;
+        let own = Registers { first, above: next + state };
+        for (i, arg) in repeated.args.iter().enumerate() {
+            let (below, inside) = self.registers.split_at_mut(first);
+            inside[i].0[..n].copy_from_slice(&below[outer.first + arg.index()].0[..n]);
+        }
+        let mut goes_on = [true; LANES];
+        for _ in 0..repeated.most {
+            self.run(body, own, &[], &(0..n));
+            let condition = &self.registers[first + body.outputs[state].index()].0;
+            for (goes_on, &holds) in goes_on.iter_mut().zip(condition) {
+                *goes_on &= holds != 0.0;
+            }
+            if !goes_on[..n].contains(&true) {
+                return;
+            }
+            let (below, above) = self.registers.split_at_mut(next);
+            for (i, merged) in above[..state].iter_mut().enumerate() {
+                let (new, old) = (&below[first + body.outputs[i].index()].0, &below[first + i].0);
+                for lane in 0..n {
+                    merged.0[lane] = if goes_on[lane] { new[lane] } else { old[lane] };
+                }
+            }
+            for i in 0..state {
+                self.registers.swap(first + i, next + i);
+            }
+        }
+    }
+}
+
+/// Where a tape's registers are.
+#[derive(Clone, Copy)]
+struct Registers {
+    /// The first of them.
+    first: usize,
+    /// The first that it does not use; those of its loops start here.
+    above: usize,
 }
 
 #[cfg(test)]

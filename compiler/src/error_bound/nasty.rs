@@ -6,7 +6,8 @@
 
 use crate::curve::Quadratic;
 use crate::ir::verify::random::Random;
-use crate::ir::{Function, Inst};
+use crate::ir::walk::{self, Domain};
+use crate::ir::{Function, ValueId};
 use crate::ops::{self, Context, MAX_RESULTS, Op, Results};
 
 /// Results of a function on such a device.
@@ -17,22 +18,38 @@ pub(crate) fn evaluate(
     curves: &[Vec<Quadratic>],
     coin: &mut Random,
 ) -> Vec<f32> {
-    let mut values: Vec<Results<f32>> = Vec::new();
-    for inst in &function.insts {
-        let results = match inst {
-            Inst::Constant(number) => [flushed(number.0 as f32, coin); MAX_RESULTS],
-            Inst::Boolean(truth) => [f32::from(u8::from(*truth)); MAX_RESULTS],
-            Inst::Input(index) => [flushed(inputs[*index as usize], coin); MAX_RESULTS],
-            Inst::Uniform(index) => [flushed(uniforms[*index as usize] as f32, coin); MAX_RESULTS],
-            Inst::Extract(tuple, index) => [values[tuple.index()][*index as usize]; MAX_RESULTS],
-            Inst::Apply { op, data, args } => {
-                let operands: Vec<f32> = args.iter().map(|a| values[a.index()][0]).collect();
-                apply(*op, &operands, Context { data: *data, curves }, coin)
-            }
-        };
-        values.push(results);
+    let inputs: Vec<f32> = inputs.iter().map(|&input| flushed(input, coin)).collect();
+    walk::walk(&mut Nasty { uniforms, curves, coin }, function, &inputs)
+}
+
+struct Nasty<'a> {
+    uniforms: &'a [f64],
+    curves: &'a [Vec<Quadratic>],
+    coin: &'a mut Random,
+}
+
+impl Domain for Nasty<'_> {
+    type Value = f32;
+
+    fn constant(&mut self, number: f64) -> f32 {
+        flushed(number as f32, self.coin)
     }
-    function.outputs.iter().map(|output| values[output.index()][0]).collect()
+
+    fn truth(&mut self, truth: bool) -> f32 {
+        f32::from(u8::from(truth))
+    }
+
+    fn uniform(&mut self, index: usize) -> f32 {
+        flushed(self.uniforms[index] as f32, self.coin)
+    }
+
+    fn apply(&mut self, op: Op, data: u32, _: &[ValueId], operands: &[f32]) -> Results<f32> {
+        apply(op, operands, Context { data, curves: self.curves }, self.coin)
+    }
+
+    fn repeat(&mut self, most: u32, body: &Function, operands: &[f32]) -> Vec<f32> {
+        walk::repeat(self, most, body, operands, |goes_on| goes_on != 0.0)
+    }
 }
 
 /// One operation.

@@ -5,9 +5,13 @@
 //! node has a [`Rate`]. [`Slots`] then cuts out functions: what a point function needs of frame
 //! rate becomes a uniform, computed once per frame on the host.
 
+mod repeat;
+
 use super::{Function, Inst, Number, ValueId};
 use crate::ops::{self, Op, Ty};
 use std::collections::HashMap;
+
+pub use repeat::Repeated;
 
 /// How often a value changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,6 +31,8 @@ pub struct Graph {
     insts: Vec<Inst>,
     rates: Vec<Rate>,
     known: HashMap<Inst, ValueId>,
+    /// Placeholders made so far.
+    placeholders: u32,
 }
 
 impl Graph {
@@ -48,7 +54,11 @@ impl Graph {
         match self.inst(value) {
             Inst::Constant(number) => Some(number.0),
             Inst::Boolean(truth) => Some(f64::from(u8::from(*truth))),
-            Inst::Input(_) | Inst::Uniform(_) | Inst::Apply { .. } | Inst::Extract(..) => None,
+            Inst::Input(_)
+            | Inst::Uniform(_)
+            | Inst::Apply { .. }
+            | Inst::Extract(..)
+            | Inst::Loop { .. } => None,
         }
     }
 
@@ -57,14 +67,17 @@ impl Graph {
         if let Some(&value) = self.known.get(&inst) {
             return value;
         }
-        let own = match inst {
+        // The frame function runs before the curves are known.
+        let own = match &inst {
             Inst::Input(_) => Rate::Point,
             Inst::Uniform(_) => Rate::Frame,
-            Inst::Constant(_) | Inst::Boolean(_) | Inst::Apply { .. } | Inst::Extract(..) => Rate::Constant,
+            Inst::Apply { .. } | Inst::Loop { .. } if asks_curves(&inst) => Rate::Point,
+            Inst::Constant(_)
+            | Inst::Boolean(_)
+            | Inst::Apply { .. }
+            | Inst::Extract(..)
+            | Inst::Loop { .. } => Rate::Constant,
         };
-        // The frame function runs before the curves are known.
-        let curve = matches!(inst, Inst::Apply { op: Op::Closest, .. });
-        let own = if curve { Rate::Point } else { own };
         let rate = inst.operands().iter().map(|&v| self.rate(v)).fold(own, Rate::max);
         let value = ValueId(self.insts.len() as u32);
         self.insts.push(inst.clone());
@@ -126,7 +139,9 @@ impl Graph {
         match self.inst(value) {
             Inst::Boolean(_) => Ty::Bool,
             Inst::Apply { op, .. } => ops::operation(*op).results[0],
-            Inst::Constant(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => Ty::Number,
+            Inst::Constant(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) | Inst::Loop { .. } => {
+                Ty::Number
+            }
         }
     }
 
@@ -208,28 +223,39 @@ impl Slots {
         outputs: &[ValueId],
     ) -> Function {
         let outputs = as_numbers(graph, outputs);
-        let leaf = |graph: &Graph, slots: &mut Self, value: ValueId| {
+        let graph = &*graph;
+        let leaf = |value: ValueId| {
             let hoisted = graph.rate(value) == Rate::Frame && graph.ty(value) == Ty::Number;
-            let tuple =
-                matches!(graph.inst(value), Inst::Apply { op, .. } if ops::operation(*op).results.len() > 1);
-            (hoisted && !tuple).then(|| Inst::Uniform(slots.slot(value)))
+            let tuple = graph.inst(value).parts().is_some();
+            (hoisted && !tuple).then(|| Inst::Uniform(self.slot(value)))
         };
-        cut(graph, self, name, inputs, &outputs, leaf)
+        cut(graph, name, inputs, &outputs, leaf)
     }
 
     /// Cuts out the frame function, last of all. `inputs` counts time, frame and param components.
     pub fn frame_function(&mut self, graph: &mut Graph, inputs: u32) -> Function {
         let values = self.values.clone();
         let outputs = as_numbers(graph, &values);
-        let leaf = |graph: &Graph, _: &mut Self, value: ValueId| match graph.inst(value) {
+        let graph = &*graph;
+        let leaf = |value: ValueId| match graph.inst(value) {
             Inst::Uniform(index) => Some(Inst::Input(*index)),
             Inst::Constant(_)
             | Inst::Boolean(_)
             | Inst::Input(_)
             | Inst::Apply { .. }
-            | Inst::Extract(..) => None,
+            | Inst::Extract(..)
+            | Inst::Loop { .. } => None,
         };
-        cut(graph, self, "frame", inputs, &outputs, leaf)
+        cut(graph, "frame", inputs, &outputs, leaf)
+    }
+}
+
+/// Whether an instruction, or a loop inside it, needs control points.
+fn asks_curves(inst: &Inst) -> bool {
+    match inst {
+        Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => false,
+        Inst::Apply { op, .. } => *op == Op::Closest,
+        Inst::Loop { body, .. } => body.insts.iter().any(asks_curves),
     }
 }
 
@@ -245,11 +271,10 @@ fn as_numbers(graph: &mut Graph, values: &[ValueId]) -> Vec<ValueId> {
 /// Copies what `outputs` need into a function of its own; `leaf` may replace a node by another.
 fn cut(
     graph: &Graph,
-    slots: &mut Slots,
     name: &str,
     inputs: u32,
     outputs: &[ValueId],
-    leaf: impl Fn(&Graph, &mut Slots, ValueId) -> Option<Inst>,
+    mut leaf: impl FnMut(ValueId) -> Option<Inst>,
 ) -> Function {
     // Mark what is needed, from the outputs down: operands have smaller ids.
     let mut replaced: HashMap<ValueId, Option<Inst>> = HashMap::new();
@@ -258,7 +283,7 @@ fn cut(
         if replaced.contains_key(&value) {
             continue;
         }
-        let new = leaf(graph, slots, value);
+        let new = leaf(value);
         if new.is_none() {
             pending.extend_from_slice(graph.inst(value).operands());
         }

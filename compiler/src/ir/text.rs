@@ -18,12 +18,14 @@
 //! }
 //! ```
 //!
-//! Numbers read back bit for bit. Reading checks the form only; [`crate::ir::verify`] checks the
+//! The body of a loop stands in braces after its operands, without a name; it has as many inputs as
+//! the loop has operands. Numbers read back bit for bit. Reading checks the form only; [`crate::ir::verify`] checks the
 //! rest. An empty line means nothing; the text of a name is kept up to the last `(` of its line.
 
 use super::{Function, Inst, Module, Number, ValueId};
 use crate::ops;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// What is wrong with a text, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -57,15 +59,20 @@ pub fn print_function(function: &Function) -> String {
 
 fn print_body(text: &mut String, head: &str, function: &Function) {
     let _ = writeln!(text, "{head}({}) {{", function.inputs);
-    for (i, inst) in function.insts.iter().enumerate() {
-        let _ = writeln!(text, "  {} = {}", ValueId(i as u32), print_inst(inst));
-    }
-    text.push_str("  return");
-    print_operands(text, &function.outputs);
-    text.push_str("\n}\n");
+    print_insts(text, "  ", function);
+    text.push_str("}\n");
 }
 
-fn print_inst(inst: &Inst) -> String {
+fn print_insts(text: &mut String, indent: &str, function: &Function) {
+    for (i, inst) in function.insts.iter().enumerate() {
+        let _ = writeln!(text, "{indent}{} = {}", ValueId(i as u32), print_inst(inst, indent));
+    }
+    let _ = write!(text, "{indent}return");
+    print_operands(text, &function.outputs);
+    text.push('\n');
+}
+
+fn print_inst(inst: &Inst, indent: &str) -> String {
     match inst {
         // The debug form of an f64 is the shortest that reads back to the same bits.
         Inst::Constant(number) => format!("constant {:?}", number.0),
@@ -80,6 +87,15 @@ fn print_inst(inst: &Inst) -> String {
                 let _ = write!(text, "[{data}]");
             }
             print_operands(&mut text, args);
+            text
+        }
+        Inst::Loop { most, body, args } => {
+            let mut text = format!("loop {most}");
+            print_operands(&mut text, args);
+            text.push_str(" {\n");
+            print_insts(&mut text, &format!("{indent}  "), body);
+            text.push_str(indent);
+            text.push('}');
             text
         }
     }
@@ -120,6 +136,9 @@ pub fn parse_function(text: &str) -> Result<Function, TextError> {
     }
 }
 
+/// Deepest nesting of loops that is read.
+const MAX_NESTING: u32 = 64;
+
 /// The lines that are not empty, with their numbers.
 struct Lines<'a> {
     rest: Vec<(usize, &'a str)>,
@@ -147,7 +166,11 @@ impl<'a> Lines<'a> {
     fn function(&mut self, keyword: &str) -> Result<Function, TextError> {
         let (line, text) = self.next()?;
         let (name, inputs) = head(text, keyword).map_err(|message| TextError { line, message })?;
-        let mut function = Function { name: name.to_owned(), inputs, ..Function::default() };
+        self.rest_of(Function { name: name.to_owned(), inputs, ..Function::default() }, MAX_NESTING)
+    }
+
+    /// The instructions of a function up to its `}`; loops may nest so much deeper.
+    fn rest_of(&mut self, mut function: Function, nesting: u32) -> Result<Function, TextError> {
         loop {
             let (line, text) = self.next()?;
             let fail = |message| TextError { line, message };
@@ -155,7 +178,16 @@ impl<'a> Lines<'a> {
                 function.outputs = values(outputs).map_err(fail)?;
                 break;
             }
-            let inst = statement(text, function.insts.len()).map_err(fail)?;
+            let inst = instruction(text, function.insts.len()).map_err(fail)?;
+            let inst = match inst.strip_suffix('{') {
+                None => statement(inst).map_err(fail)?,
+                Some(_) if nesting == 0 => return Err(fail("loops nest too deep".to_owned())),
+                Some(head) => {
+                    let (most, args) = loop_head(head).map_err(fail)?;
+                    let body = Function { inputs: args.len() as u32, ..Function::default() };
+                    Inst::Loop { most, body: Arc::new(self.rest_of(body, nesting - 1)?), args }
+                }
+            };
             function.insts.push(inst);
         }
         match self.next()? {
@@ -173,13 +205,24 @@ fn head<'a>(text: &'a str, keyword: &str) -> Result<(&'a str, u32), String> {
     Ok((name.trim(), number(inputs)?))
 }
 
-/// `%index = ` instruction.
-fn statement(text: &str, index: usize) -> Result<Inst, String> {
+/// The instruction after `%index = `.
+fn instruction(text: &str, index: usize) -> Result<&str, String> {
     let (target, inst) = text.split_once('=').ok_or("`=` expected")?;
     if value(target.trim())?.index() != index {
         return Err(format!("%{index} expected on the left"));
     }
-    let inst = inst.trim();
+    Ok(inst.trim())
+}
+
+/// Steps and operands in `loop ` steps operands.
+fn loop_head(text: &str) -> Result<(u32, Vec<ValueId>), String> {
+    let rest = text.strip_prefix("loop ").ok_or("`loop` expected before `{`")?.trim();
+    let (most, args) = rest.split_once(' ').ok_or("operands of the loop expected")?;
+    Ok((number(most)?, values(args)?))
+}
+
+/// An instruction of one line.
+fn statement(inst: &str) -> Result<Inst, String> {
     let (word, rest) = inst.split_once(' ').unwrap_or((inst, ""));
     let rest = rest.trim();
     match word {
@@ -267,6 +310,12 @@ mod tests {
             ("fn f(1) {\n  %0 = bogus %1\n  return\n}", "line 2: no operation is called `bogus`"),
             ("fn f(1) {\n  %0 = add[3] %0 %0\n  return\n}", "line 2: `add` takes no data in brackets"),
             ("fn f(1) {\n  %0 = perlin %0 %0\n  return\n}", "line 2: `perlin` needs data in brackets"),
+            ("fn f(1) {\n  %0 = input 0\n  %1 = loop %0 {\n", "line 3: operands of the loop expected"),
+            ("fn f(1) {\n  %0 = input 0\n  %1 = neg %0 {\n", "line 3: `loop` expected before `{`"),
+            (
+                "fn f(1) {\n  %0 = input 0\n  %1 = loop 3 %0 {\n  %0 = bogus 0\n",
+                "line 4: no operation is called `bogus`",
+            ),
             ("fn f(1) {\n  return\n}\nmore", "line 4: text after the function"),
         ];
         for (text, message) in cases {

@@ -6,19 +6,22 @@
 //! 2. [`leaves_are_in_range`]: inputs and uniforms exist, constants are finite;
 //! 3. [`operands_fit`]: operations have as many operands as the table says, of its types;
 //! 4. [`data_fits`]: data is 0 where it means nothing, and a curve that exists for curve operations;
-//! 5. [`tuples_are_extracted`]: values of operations with several results are read only by
-//!    `extract`, which reads nothing else and stays within their results;
-//! 6. [`outputs_are_numbers`]: outputs exist and are single numbers.
+//! 5. [`tuples_are_extracted`]: values of operations with several results and of loops are read only
+//!    by `extract`, which reads nothing else and stays within their results;
+//! 6. [`outputs_are_numbers`]: outputs exist and are single numbers;
+//! 7. [`loops_fit`]: a loop takes at most [`MAX_STEPS`] steps, has a state of 1 to [`MAX_STATE`] numbers
+//!    and as many operands as its body has inputs, all single numbers; its body is well formed, reads
+//!    no uniform, and its last output is a truth value.
 //!
 //! A module is well formed when besides
 //!
-//! 7. [`module`]: the frame function reads no uniform, and its outputs are the uniforms of the rest.
+//! 8. [`module`]: the frame function reads no uniform, and its outputs are the uniforms of the rest.
 //!
 //! Example: `%0 = less %0 %0` breaks 1; [`random`] makes functions that break nothing.
 
 pub mod random;
 
-use super::{Function, Inst, Module, ValueId};
+use super::{Function, Inst, MAX_STATE, MAX_STEPS, Module, ValueId};
 use crate::ops::{self, Op, Ty};
 
 /// What breaks an invariant, and where.
@@ -112,6 +115,26 @@ pub enum VerifyError {
         /// The result it asks for.
         index: u32,
     },
+    /// A loop takes too many steps or has no state or too much of it.
+    #[error("`{function}`, {value}: a loop of {steps} steps over {state} numbers")]
+    LoopOutOfRange {
+        /// Name of the function.
+        function: String,
+        /// The instruction.
+        value: ValueId,
+        /// Steps it takes.
+        steps: u32,
+        /// Numbers in its state.
+        state: usize,
+    },
+    /// The last output of the body of a loop is no truth value.
+    #[error("`{function}`, {value}: the body does not say whether to go on")]
+    NoCondition {
+        /// Name of the function.
+        function: String,
+        /// The loop.
+        value: ValueId,
+    },
     /// An output does not exist or is no number.
     #[error("`{function}`: output {output} is not a number of the function")]
     BadOutput {
@@ -141,6 +164,11 @@ pub fn module(module: &Module, curves: u32) -> Checked {
 ///
 /// The first broken invariant.
 pub fn function(f: &Function, uniforms: u32, curves: u32) -> Checked {
+    instructions(f, uniforms, curves)?;
+    outputs_are_numbers(f, &f.outputs)
+}
+
+fn instructions(f: &Function, uniforms: u32, curves: u32) -> Checked {
     for (i, inst) in f.insts.iter().enumerate() {
         let value = ValueId(i as u32);
         operands_are_earlier(f, value, inst)?;
@@ -148,8 +176,9 @@ pub fn function(f: &Function, uniforms: u32, curves: u32) -> Checked {
         operands_fit(f, value, inst)?;
         data_fits(f, value, inst, curves)?;
         tuples_are_extracted(f, value, inst)?;
+        loops_fit(f, value, inst, curves)?;
     }
-    outputs_are_numbers(f)
+    Ok(())
 }
 
 fn operands_are_earlier(f: &Function, value: ValueId, inst: &Inst) -> Checked {
@@ -166,7 +195,9 @@ fn leaves_are_in_range(f: &Function, value: ValueId, inst: &Inst, uniforms: u32)
         Inst::Constant(number) if !number.0.is_finite() => {
             return Err(VerifyError::ConstantNotFinite { function: f.name.clone(), value });
         }
-        Inst::Constant(_) | Inst::Boolean(_) | Inst::Apply { .. } | Inst::Extract(..) => return Ok(()),
+        Inst::Constant(_) | Inst::Boolean(_) | Inst::Apply { .. } | Inst::Extract(..) | Inst::Loop { .. } => {
+            return Ok(());
+        }
     };
     if index < count {
         return Ok(());
@@ -205,7 +236,8 @@ fn data_fits(f: &Function, value: ValueId, inst: &Inst, curves: u32) -> Checked 
 
 fn tuples_are_extracted(f: &Function, value: ValueId, inst: &Inst) -> Checked {
     if let Inst::Extract(tuple, index) = inst {
-        if results(f, *tuple) > 1 && (*index as usize) < results(f, *tuple) {
+        let parts = f.insts[tuple.index()].parts();
+        if parts.is_some_and(|parts| (*index as usize) < parts) {
             return Ok(());
         }
         return Err(VerifyError::NothingToExtract {
@@ -215,18 +247,49 @@ fn tuples_are_extracted(f: &Function, value: ValueId, inst: &Inst) -> Checked {
             index: *index,
         });
     }
-    match inst.operands().iter().find(|&&operand| results(f, operand) > 1) {
+    match inst.operands().iter().find(|operand| f.insts[operand.index()].parts().is_some()) {
         None => Ok(()),
         Some(&tuple) => Err(VerifyError::TupleReadWhole { function: f.name.clone(), value, tuple }),
     }
 }
 
-fn outputs_are_numbers(f: &Function) -> Checked {
-    for &output in &f.outputs {
+fn loops_fit(f: &Function, value: ValueId, inst: &Inst, curves: u32) -> Checked {
+    let Inst::Loop { most, body, args } = inst else { return Ok(()) };
+    let state = body.state();
+    if *most > MAX_STEPS || state == 0 || state > MAX_STATE {
+        let (function, steps) = (f.name.clone(), *most);
+        return Err(VerifyError::LoopOutOfRange { function, value, steps, state });
+    }
+    let expected = body.inputs as usize;
+    if args.len() != expected || args.len() < state {
+        return Err(VerifyError::WrongArity {
+            function: f.name.clone(),
+            value,
+            found: args.len(),
+            expected: expected.max(state),
+        });
+    }
+    if let Some(&operand) = args.iter().find(|&&operand| f.ty(operand) != Ty::Number) {
+        return Err(VerifyError::WrongType { function: f.name.clone(), value, operand, found: Ty::Bool });
+    }
+    instructions(body, 0, curves)?;
+    outputs_are_numbers(body, &body.outputs[..state])?;
+    let decides = |condition: ValueId| {
+        body.insts.get(condition.index()).is_some_and(|_| body.ty(condition) == Ty::Bool)
+    };
+    if decides(body.outputs[state]) {
+        Ok(())
+    } else {
+        Err(VerifyError::NoCondition { function: f.name.clone(), value })
+    }
+}
+
+fn outputs_are_numbers(f: &Function, outputs: &[ValueId]) -> Checked {
+    for &output in outputs {
         if output.index() >= f.insts.len() || f.ty(output) != Ty::Number {
             return Err(VerifyError::BadOutput { function: f.name.clone(), output });
         }
-        if results(f, output) > 1 {
+        if f.insts[output.index()].parts().is_some() {
             return Err(VerifyError::TupleReadWhole {
                 function: f.name.clone(),
                 value: output,
@@ -235,14 +298,6 @@ fn outputs_are_numbers(f: &Function) -> Checked {
         }
     }
     Ok(())
-}
-
-/// How many results a value has.
-fn results(f: &Function, value: ValueId) -> usize {
-    match &f.insts[value.index()] {
-        Inst::Apply { op, .. } => ops::operation(*op).results.len(),
-        Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => 1,
-    }
 }
 
 #[cfg(test)]
@@ -262,6 +317,14 @@ mod tests {
             let shape = random::Shape::default();
             assert_eq!(function(&random::function(seed, &shape), shape.uniforms, shape.curves), Ok(()));
         }
+    }
+
+    /// A loop that halves a number while it is above 1 has this head and this condition.
+    fn halving(head: &str, condition: &str) -> String {
+        format!(
+            "%0 = input 0\n%1 = {head} {{\n%0 = input 0\n%1 = constant 1.0\n%2 = less %1 %0\n\
+             %3 = constant 0.5\n%4 = mul %0 %3\nreturn %4 {condition}\n}}\n%2 = extract %1 0\nreturn %2"
+        )
     }
 
     #[test]
@@ -287,6 +350,40 @@ mod tests {
                 "`f`, %2: %1 has no result 8 to extract",
             ),
             ("%0 = input 0\n%1 = extract %0 0\nreturn %1", "`f`, %1: %0 has no result 0 to extract"),
+            (&halving("loop 3 %0", "%2"), "fine"),
+            (&halving("loop 1024 %0", "%2"), "fine"),
+            (&halving("loop 1025 %0", "%2"), "`f`, %1: a loop of 1025 steps over 1 numbers"),
+            (
+                "%0 = input 0\n%1 = loop 3 %0 {\n%0 = boolean true\nreturn %0\n}\nreturn %0",
+                "`f`, %1: a loop of 3 steps over 0 numbers",
+            ),
+            (&halving("loop 3 %0", "%1"), "`f`, %1: the body does not say whether to go on"),
+            (&halving("loop 3 %0", "%9"), "`f`, %1: the body does not say whether to go on"),
+            (&halving("loop 3 %0 %1", "%2"), "`f`, %1: operand %1 is not an earlier value"),
+            (
+                "%0 = boolean true\n%1 = loop 3 %0 {\n%0 = input 0\n%1 = boolean true\nreturn %0 %1\n}\nreturn %0",
+                "`f`, %1: operand %0 is a Bool",
+            ),
+            (
+                "%0 = input 0\n%1 = loop 3 %0 {\n%0 = input 1\n%1 = boolean true\nreturn %0 %1\n}\nreturn %0",
+                "``, %0: input 1 of 1",
+            ),
+            (
+                "%0 = input 0\n%1 = loop 3 %0 {\n%0 = uniform 0\n%1 = boolean true\nreturn %0 %1\n}\nreturn %0",
+                "``, %0: uniform 0 of 0",
+            ),
+            (
+                "%0 = input 0\n%1 = loop 3 %0 {\n%0 = boolean true\nreturn %0 %0 %0\n}\nreturn %0",
+                "`f`, %1: 1 operands, 2 expected",
+            ),
+            (
+                &halving("loop 3 %0", "%2").replace("extract %1 0", "neg %1"),
+                "`f`, %2: %1 has several results",
+            ),
+            (
+                &halving("loop 3 %0", "%2").replace("extract %1 0", "extract %1 1"),
+                "`f`, %2: %1 has no result 1 to extract",
+            ),
             ("%0 = boolean true\nreturn %0", "`f`: output %0 is not a number of the function"),
             ("%0 = input 0\nreturn %1", "`f`: output %1 is not a number of the function"),
         ];

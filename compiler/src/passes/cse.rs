@@ -18,6 +18,7 @@ use std::collections::HashMap;
 
 /// The pass.
 pub fn cse(function: &mut Function) -> bool {
+    let inside = super::in_bodies(function, cse);
     let mut known: HashMap<Inst, ValueId> = HashMap::new();
     let mut renamed: Vec<ValueId> = Vec::with_capacity(function.insts.len());
     let mut insts: Vec<Inst> = Vec::with_capacity(function.insts.len());
@@ -33,7 +34,7 @@ pub fn cse(function: &mut Function) -> bool {
     for output in &mut function.outputs {
         *output = renamed[output.index()];
     }
-    let changed = insts.len() < function.insts.len();
+    let changed = inside || insts.len() < function.insts.len();
     function.insts = insts;
     changed
 }

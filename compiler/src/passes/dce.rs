@@ -15,6 +15,7 @@ use crate::ir::{Function, Inst, ValueId};
 
 /// The pass.
 pub fn dce(function: &mut Function) -> bool {
+    let inside = super::in_bodies(function, dce);
     // Operands are earlier, so one walk from the end marks all that is needed.
     let mut needed = vec![false; function.insts.len()];
     for output in &function.outputs {
@@ -36,7 +37,7 @@ pub fn dce(function: &mut Function) -> bool {
     for output in &mut function.outputs {
         *output = renamed[output.index()];
     }
-    let changed = insts.len() < function.insts.len();
+    let changed = inside || insts.len() < function.insts.len();
     function.insts = insts;
     changed
 }

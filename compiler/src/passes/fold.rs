@@ -48,7 +48,7 @@ pub fn simplify(inst: &Inst, lookup: impl Fn(ValueId) -> Inst) -> Simplified {
 pub fn fold(function: &mut Function) -> bool {
     let mut renamed: Vec<ValueId> = Vec::with_capacity(function.insts.len());
     let mut insts: Vec<Inst> = Vec::with_capacity(function.insts.len());
-    let mut changed = false;
+    let mut changed = super::in_bodies(function, fold);
     for old in &function.insts {
         let inst = old.map_operands(|v| renamed[v.index()]);
         let inst = match simplify(&inst, |v| insts[v.index()].clone()) {
@@ -95,7 +95,9 @@ fn reciprocal(inst: &Inst, insts: &[Inst]) -> Option<(ValueId, f64)> {
 /// One rule.
 fn step(inst: &Inst, lookup: &impl Fn(ValueId) -> Inst) -> Simplified {
     match inst {
-        Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) => Simplified::Same,
+        Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Loop { .. } => {
+            Simplified::Same
+        }
         Inst::Extract(tuple, index) => match computed(&lookup(*tuple), *index as usize, lookup) {
             Some(constant) => Simplified::Inst(constant),
             None => Simplified::Same,
@@ -130,7 +132,9 @@ fn constant(inst: &Inst) -> Option<f64> {
     match inst {
         Inst::Constant(number) => Some(number.0),
         Inst::Boolean(truth) => Some(f64::from(u8::from(*truth))),
-        Inst::Input(_) | Inst::Uniform(_) | Inst::Apply { .. } | Inst::Extract(..) => None,
+        Inst::Input(_) | Inst::Uniform(_) | Inst::Apply { .. } | Inst::Extract(..) | Inst::Loop { .. } => {
+            None
+        }
     }
 }
 
@@ -159,7 +163,8 @@ impl Operands<'_> {
             | Inst::Boolean(_)
             | Inst::Input(_)
             | Inst::Uniform(_)
-            | Inst::Extract(..) => None,
+            | Inst::Extract(..)
+            | Inst::Loop { .. } => None,
         }
     }
 

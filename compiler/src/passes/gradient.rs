@@ -10,9 +10,12 @@
 //! not vary with the position have the derivative 0 and cost nothing. Exact where the value is smooth,
 //! one of the one-sided derivatives at kinks.
 
+mod repeat;
+
 use crate::ir::graph::{Graph, Rate};
 use crate::ir::{Inst, ValueId};
 use crate::ops::{self, Op, Ty};
+use repeat::Repeat;
 use std::collections::{HashMap, HashSet};
 
 /// Derivatives of a value that varies, by direction and result; `None` if an operation on the way has
@@ -27,12 +30,40 @@ type Slopes = Option<Vec<Vec<ValueId>>>;
 pub fn gradient(graph: &mut Graph, value: ValueId, inputs: &[u32]) -> Option<Vec<ValueId>> {
     let (zero, one) = (graph.number(0.0), graph.number(1.0));
     let mut known: HashMap<ValueId, Slopes> = HashMap::new();
-    for node in varying(graph, value) {
+    for node in varying(graph, &[value], &known) {
+        if let Inst::Input(index) = graph.inst(node) {
+            let slopes = inputs.iter().map(|i| vec![if i == index { one } else { zero }]);
+            known.insert(node, Some(slopes.collect()));
+        }
+    }
+    differentiate(graph, &[value], &mut known, inputs.len());
+    (0..inputs.len()).map(|direction| slope(&known, value, direction, zero)).collect()
+}
+
+/// The derivative of a single number; 0 for what does not vary at all.
+fn slope(
+    known: &HashMap<ValueId, Slopes>,
+    value: ValueId,
+    direction: usize,
+    zero: ValueId,
+) -> Option<ValueId> {
+    match known.get(&value) {
+        None => Some(zero),
+        Some(slopes) => slopes.as_ref().map(|slopes| slopes[direction][0]),
+    }
+}
+
+/// Adds the derivatives of all that `values` need; those of inputs are known.
+fn differentiate(
+    graph: &mut Graph,
+    values: &[ValueId],
+    known: &mut HashMap<ValueId, Slopes>,
+    directions: usize,
+) {
+    let zero = graph.number(0.0);
+    for node in varying(graph, values, known) {
         let slopes = match graph.inst(node).clone() {
-            Inst::Constant(_) | Inst::Boolean(_) | Inst::Uniform(_) => continue,
-            Inst::Input(index) => {
-                Some(inputs.iter().map(|&i| vec![if i == index { one } else { zero }]).collect())
-            }
+            Inst::Constant(_) | Inst::Boolean(_) | Inst::Uniform(_) | Inst::Input(_) => continue,
             Inst::Extract(tuple, index) => {
                 let parts =
                     |slopes: &Vec<Vec<ValueId>>| slopes.iter().map(|s| vec![s[index as usize]]).collect();
@@ -40,24 +71,23 @@ pub fn gradient(graph: &mut Graph, value: ValueId, inputs: &[u32]) -> Option<Vec
             }
             Inst::Apply { op, data, args } => {
                 let step = Step { node, op, data, args, zero };
-                step.slopes(graph, &known, inputs.len())
+                step.slopes(graph, known, directions)
+            }
+            Inst::Loop { most, body, args } => {
+                let repeat = Repeat { most, body: &body, args: &args, zero };
+                repeat.slopes(graph, known, directions)
             }
         };
         known.insert(node, slopes);
     }
-    match known.remove(&value) {
-        // It does not vary at all.
-        None => Some(vec![zero; inputs.len()]),
-        Some(slopes) => slopes.map(|slopes| slopes.into_iter().map(|slope| slope[0]).collect()),
-    }
 }
 
-/// What `value` needs and varies with the position, operands first.
-fn varying(graph: &Graph, value: ValueId) -> Vec<ValueId> {
+/// What `values` need, varies with the position and is not known, operands first.
+fn varying(graph: &Graph, values: &[ValueId], known: &HashMap<ValueId, Slopes>) -> Vec<ValueId> {
     let mut found = HashSet::new();
-    let mut pending = vec![value];
+    let mut pending = values.to_vec();
     while let Some(node) = pending.pop() {
-        if graph.rate(node) == Rate::Point && found.insert(node) {
+        if graph.rate(node) == Rate::Point && !known.contains_key(&node) && found.insert(node) {
             pending.extend_from_slice(graph.inst(node).operands());
         }
     }
@@ -84,11 +114,8 @@ impl Step {
             return Some(vec![vec![self.zero]; directions]);
         }
         let along = |direction: usize| {
-            let slope = |arg: &ValueId| match known.get(arg) {
-                None => Some(self.zero),
-                Some(slopes) => slopes.as_ref().map(|slopes| slopes[direction][0]),
-            };
-            let slopes: Vec<ValueId> = self.args.iter().map(slope).collect::<Option<_>>()?;
+            let slopes = self.args.iter().map(|&arg| slope(known, arg, direction, self.zero));
+            let slopes: Vec<ValueId> = slopes.collect::<Option<_>>()?;
             if slopes.iter().all(|&slope| slope == self.zero) {
                 return Some(vec![self.zero; row.results.len()]);
             }

@@ -4,30 +4,30 @@
 //! `extract` is no cell of its own but names one. One walk from the end finds the last use of each
 //! cell, one walk from the front hands out registers: the lowest free ones, given back after the
 //! last use. Constants, inputs and uniforms are loaded just before their first use. The cells of one
-//! operation lie in neighbouring registers.
+//! operation, and of the state of a loop, lie in neighbouring registers. In the body of a loop the
+//! inputs have the first registers from beginning to end.
 
-use super::{MAX_OPERANDS, Register, Tape, TapeOp, rounded};
+use super::{MAX_OPERANDS, Register, Tape, TapeLoop, TapeOp, rounded};
 use crate::ir::{Function, Inst, ValueId};
-use crate::ops;
 
 /// Allocates registers for a verified function.
 pub(super) fn allocate(function: &Function) -> Tape {
-    let cells = Cells::new(function);
-    let last_use = last_uses(function, &cells);
-    let place = vec![None; cells.count];
-    let mut scan = Scan { function, cells, last_use, place, free: Vec::new(), ops: Vec::new() };
-    for (i, inst) in function.insts.iter().enumerate() {
-        let needed = scan.cells.of(i).any(|cell| scan.last_use[cell].is_some());
-        if let Inst::Apply { op, data, args } = inst
-            && needed
-        {
-            let args = scan.operands(i, args);
-            let to = scan.results(i);
-            scan.ops.push(TapeOp::Apply { op: *op, data: *data, to, args });
+    Scan::new(function).tape()
+}
+
+/// The same for the body of a loop.
+fn allocate_body(body: &Function) -> Tape {
+    let mut scan = Scan::new(body);
+    scan.free.resize(body.inputs as usize, false);
+    for (i, inst) in body.insts.iter().enumerate() {
+        if let Inst::Input(index) = inst {
+            let cell = scan.cells.named[i];
+            scan.place[cell] = Some(Register(*index));
+            // Read until the end, so never free.
+            scan.last_use[cell] = Some(body.insts.len());
         }
     }
-    let outputs = function.outputs.iter().map(|&v| scan.read(v)).collect();
-    Tape { inputs: function.inputs, outputs, registers: scan.free.len() as u32, ops: scan.ops }
+    scan.tape()
 }
 
 /// Numbers the results of all instructions.
@@ -45,8 +45,12 @@ impl Cells {
         for inst in &function.insts {
             let (named, results) = match inst {
                 Inst::Extract(tuple, index) => (cells.starts[tuple.index()] + *index as usize, 0),
-                Inst::Apply { op, .. } => (cells.count, ops::operation(*op).results.len()),
-                Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) => (cells.count, 1),
+                Inst::Constant(_)
+                | Inst::Boolean(_)
+                | Inst::Input(_)
+                | Inst::Uniform(_)
+                | Inst::Apply { .. }
+                | Inst::Loop { .. } => (cells.count, inst.parts().unwrap_or(1)),
             };
             cells.named.push(named);
             cells.count += results;
@@ -87,16 +91,51 @@ struct Scan<'a> {
     /// Which registers are free; as long as the number of registers so far.
     free: Vec<bool>,
     ops: Vec<TapeOp>,
+    loops: Vec<TapeLoop>,
 }
 
-impl Scan<'_> {
+impl<'a> Scan<'a> {
+    fn new(function: &'a Function) -> Self {
+        let cells = Cells::new(function);
+        let last_use = last_uses(function, &cells);
+        let place = vec![None; cells.count];
+        Self { function, cells, last_use, place, free: Vec::new(), ops: Vec::new(), loops: Vec::new() }
+    }
+
+    fn tape(mut self) -> Tape {
+        for (i, inst) in self.function.insts.iter().enumerate() {
+            if self.cells.of(i).any(|cell| self.last_use[cell].is_some()) {
+                self.step(i, inst);
+            }
+        }
+        let outputs = self.function.outputs.iter().map(|&v| self.read(v)).collect();
+        let (inputs, registers) = (self.function.inputs, self.free.len() as u32);
+        Tape { inputs, outputs, registers, ops: self.ops, loops: self.loops }
+    }
+
+    fn step(&mut self, i: usize, inst: &Inst) {
+        match inst {
+            Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => {}
+            Inst::Apply { op, data, args } => {
+                let registers = self.operands(i, args);
+                let mut args = [Register(0); MAX_OPERANDS];
+                args[..registers.len()].copy_from_slice(&registers);
+                let to = self.results(i);
+                self.ops.push(TapeOp::Apply { op: *op, data: *data, to, args });
+            }
+            Inst::Loop { most, body, args } => {
+                let args = self.operands(i, args);
+                let to = self.results(i);
+                self.ops.push(TapeOp::Loop { index: self.loops.len() as u32, to });
+                self.loops.push(TapeLoop { most: *most, args, body: allocate_body(body) });
+            }
+        }
+    }
+
     /// Registers of the operands of instruction `i`. Those that are read for the last time are free
     /// afterwards, so that the results may take them.
-    fn operands(&mut self, i: usize, operands: &[ValueId]) -> [Register; MAX_OPERANDS] {
-        let mut args = [Register(0); MAX_OPERANDS];
-        for (arg, &operand) in args.iter_mut().zip(operands) {
-            *arg = self.read(operand);
-        }
+    fn operands(&mut self, i: usize, operands: &[ValueId]) -> Vec<Register> {
+        let args: Vec<Register> = operands.iter().map(|&operand| self.read(operand)).collect();
         for (arg, operand) in args.iter().zip(operands) {
             self.free[arg.index()] |= self.last_use[self.cells.named[operand.index()]] == Some(i);
         }
@@ -128,7 +167,7 @@ impl Scan<'_> {
             Inst::Input(index) => self.ops.push(TapeOp::Input { to, index }),
             Inst::Uniform(index) => self.ops.push(TapeOp::Uniform { to, index }),
             // Operations have their place before anyone reads them: operands are earlier.
-            Inst::Apply { .. } | Inst::Extract(..) => {}
+            Inst::Apply { .. } | Inst::Loop { .. } | Inst::Extract(..) => {}
         }
         to
     }

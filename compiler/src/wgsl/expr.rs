@@ -8,6 +8,22 @@
 //! %8 = closest[1] …       let v8 = vol_closest(vec3f(…), bitcast<u32>(vol_uniforms[6]), …);
 //! %9 = extract %8 5       let v9: f32 = v8.distance;
 //! ```
+//!
+//! A loop keeps its state in variables and has the values of its body inside; a condition that fails
+//! keeps the state and ends the loop, without a branch:
+//!
+//! ```text
+//! %7 = loop 8 %2 %3 {     var v7_s0: f32 = v2;
+//!                         var v7_go: bool = true;
+//!                         for (var v7_i: u32 = 0u; (v7_i < 8u) & v7_go; v7_i = v7_i + 1u) {
+//!   %0 = input 0
+//!   %1 = input 1
+//!   %2 = mul %0 %1          let v7_2: f32 = (v7_s0 * v3);
+//!   %3 = less %0 %1         let v7_3: bool = (v7_s0 < v3);
+//!   return %2 %3            let v7_n0: f32 = select(v7_s0, v7_2, v7_3);
+//!                           v7_s0 = v7_n0;
+//! }                         v7_go = v7_3; }
+//! ```
 
 use super::names;
 use crate::ir::{Function, Inst, ValueId};
@@ -24,10 +40,9 @@ pub(super) fn function(index: usize, function: &Function, curve_table: u32) -> S
         parameters.join(", "),
         names::output_type(function.outputs.len()),
     );
-    let writer = Writer { function, curve_table };
-    for (i, inst) in function.insts.iter().enumerate() {
-        writer.statement(&mut text, ValueId(i as u32), inst);
-    }
+    let inputs: Vec<String> = (0..function.inputs).map(|i| format!("x{i}")).collect();
+    let writer = Writer { function, curve_table, inputs, prefix: "v".to_owned(), indent: "  ".to_owned() };
+    writer.statements(&mut text);
     let outputs: Vec<String> = function.outputs.iter().map(|&v| writer.name(v)).collect();
     let _ = writeln!(text, "  return {};\n}}\n", names::output_value(&outputs));
     text
@@ -36,20 +51,32 @@ pub(super) fn function(index: usize, function: &Function, curve_table: u32) -> S
 struct Writer<'a> {
     function: &'a Function,
     curve_table: u32,
+    /// What the inputs are called.
+    inputs: Vec<String>,
+    /// What the names of values start with.
+    prefix: String,
+    indent: String,
 }
 
 impl Writer<'_> {
     /// What a value is called: inputs keep the name of their parameter.
     fn name(&self, value: ValueId) -> String {
         match self.function.insts[value.index()] {
-            Inst::Input(index) => format!("x{index}"),
+            Inst::Input(index) => self.inputs[index as usize].clone(),
             Inst::Constant(_)
             | Inst::Boolean(_)
             | Inst::Uniform(_)
             | Inst::Apply { .. }
+            | Inst::Loop { .. }
             | Inst::Extract(..) => {
-                format!("v{}", value.0)
+                format!("{}{}", self.prefix, value.0)
             }
+        }
+    }
+
+    fn statements(&self, text: &mut String) {
+        for (i, inst) in self.function.insts.iter().enumerate() {
+            self.statement(text, ValueId(i as u32), inst);
         }
     }
 
@@ -61,16 +88,49 @@ impl Writer<'_> {
             Inst::Uniform(index) => format!("vol_uniforms[{index}]"),
             Inst::Apply { op, data, args } => self.operation(ops::operation(*op), *data, args),
             Inst::Extract(tuple, index) => self.extract(*tuple, *index),
+            Inst::Loop { most, body, args } => {
+                return self.repeat(text, &self.name(value), *most, body, args);
+            }
         };
+        let (indent, name) = (&self.indent, self.name(value));
         let _ = match self.written_type(value, inst) {
-            Some(ty) => writeln!(text, "  let v{}: {ty} = {expression};", value.0),
-            None => writeln!(text, "  let v{} = {expression};", value.0),
+            Some(ty) => writeln!(text, "{indent}let {name}: {ty} = {expression};"),
+            None => writeln!(text, "{indent}let {name} = {expression};"),
         };
+    }
+
+    /// A loop; its results are the variables `name_s0`, `name_s1` …
+    fn repeat(&self, text: &mut String, name: &str, most: u32, body: &Function, args: &[ValueId]) {
+        let (indent, state) = (&self.indent, body.state());
+        let mut inputs: Vec<String> = args.iter().map(|&arg| self.name(arg)).collect();
+        for (i, input) in inputs.iter_mut().enumerate().take(state) {
+            let variable = format!("{name}_s{i}");
+            let _ = writeln!(text, "{indent}var {variable}: f32 = {input};");
+            *input = variable;
+        }
+        let _ = writeln!(
+            text,
+            "{indent}var {name}_go: bool = true;\n\
+             {indent}for (var {name}_i: u32 = 0u; ({name}_i < {most}u) & {name}_go; {name}_i = {name}_i + 1u) {{",
+        );
+        let (prefix, indent) = (format!("{name}_"), format!("{indent}  "));
+        let inside = Writer { function: body, curve_table: self.curve_table, inputs, prefix, indent };
+        inside.statements(text);
+        let outputs: Vec<String> = body.outputs.iter().map(|&output| inside.name(output)).collect();
+        let (indent, goes_on) = (&inside.indent, &outputs[state]);
+        // All of the next state before any of it is replaced: outputs may be variables of the state.
+        for (i, next) in outputs.iter().enumerate().take(state) {
+            let _ = writeln!(text, "{indent}let {name}_n{i}: f32 = select({name}_s{i}, {next}, {goes_on});");
+        }
+        for i in 0..state {
+            let _ = writeln!(text, "{indent}{name}_s{i} = {name}_n{i};");
+        }
+        let _ = writeln!(text, "{indent}{name}_go = {goes_on};\n{}}}", self.indent);
     }
 
     /// The type to write; tuples have types of the prelude, which are left to the compiler.
     fn written_type(&self, value: ValueId, inst: &Inst) -> Option<&'static str> {
-        let tuple = matches!(inst, Inst::Apply { op, .. } if ops::operation(*op).results.len() > 1);
+        let tuple = inst.parts().is_some();
         let ty = match self.function.ty(value) {
             Ty::Number => "f32",
             Ty::Bool => "bool",
@@ -80,9 +140,10 @@ impl Writer<'_> {
 
     fn extract(&self, tuple: ValueId, index: u32) -> String {
         let suffix = match &self.function.insts[tuple.index()] {
-            Inst::Apply { op, .. } => ops::operation(*op).wgsl_extract[index as usize],
+            Inst::Apply { op, .. } => ops::operation(*op).wgsl_extract[index as usize].to_owned(),
+            Inst::Loop { .. } => format!("_s{index}"),
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => {
-                ""
+                String::new()
             }
         };
         format!("{}{suffix}", self.name(tuple))

@@ -1,12 +1,13 @@
 //! Well-formed functions at random, for tests of everything that reads IR.
 //!
 //! In: a seed and a [`Shape`]. Out: the same function each time, which the verifier accepts. All
-//! operations of the table occur. Most functions end far outside what a scene would compute
+//! operations of the table occur, and loops, some inside others. Most functions end far outside what a scene would compute
 //! (overflow, division by zero); with [`Shape::tame`] operands are held within the domains of the
 //! table, so that values stay finite.
 
 use crate::ir::{Function, Inst, Number, ValueId};
 use crate::ops::{self, Op, Operation, Ty};
+use std::sync::Arc;
 
 /// What a generated function may contain.
 #[derive(Clone, Debug)]
@@ -68,14 +69,7 @@ fn mix(z: u64) -> u64 {
 /// A function of this shape.
 #[must_use]
 pub fn function(seed: u64, shape: &Shape) -> Function {
-    let mut writer = Writer {
-        random: Random::new(seed),
-        shape,
-        insts: Vec::new(),
-        numbers: Vec::new(),
-        truths: Vec::new(),
-    };
-    writer.leaves();
+    let mut writer = Writer::new(Random::new(seed), shape, 2);
     for _ in 0..shape.operations {
         writer.operation();
     }
@@ -89,9 +83,18 @@ struct Writer<'a> {
     insts: Vec<Inst>,
     numbers: Vec<ValueId>,
     truths: Vec<ValueId>,
+    /// How deep loops may still nest.
+    nesting: u32,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
+    fn new(random: Random, shape: &'a Shape, nesting: u32) -> Self {
+        let (insts, numbers, truths) = (Vec::new(), Vec::new(), Vec::new());
+        let mut writer = Self { random, shape, insts, numbers, truths, nesting };
+        writer.leaves();
+        writer
+    }
+
     fn push(&mut self, inst: Inst) -> ValueId {
         self.insts.push(inst);
         ValueId(self.insts.len() as u32 - 1)
@@ -120,6 +123,9 @@ impl Writer<'_> {
     }
 
     fn operation(&mut self) {
+        if self.nesting > 0 && self.random.below(16) == 0 {
+            return self.repeat();
+        }
         let row = &ops::TABLE[self.random.below(ops::TABLE.len())];
         let data = match row.op {
             Op::Closest if self.shape.curves == 0 => return,
@@ -140,6 +146,35 @@ impl Writer<'_> {
         } else {
             let pool = if row.results[0] == Ty::Bool { &mut self.truths } else { &mut self.numbers };
             pool.push(value);
+        }
+    }
+
+    /// A loop of a few steps over a few numbers.
+    fn repeat(&mut self) {
+        let state = 1 + self.random.below(3);
+        let args: Vec<ValueId> = (0..state + self.random.below(3)).map(|_| self.number()).collect();
+        let shape = Shape { inputs: args.len() as u32, uniforms: 0, ..self.shape.clone() };
+        let mut inside = Writer::new(Random(self.random.bits()), &shape, self.nesting - 1);
+        for _ in 0..1 + self.random.below(8) {
+            inside.operation();
+        }
+        let mut outputs: Vec<ValueId> = Vec::new();
+        for _ in 0..state {
+            let next = inside.number();
+            outputs.push(if shape.tame { inside.held(next, -8.0, 8.0) } else { next });
+        }
+        // Always, never, or as some comparison says.
+        outputs.push(inside.truths[inside.random.below(inside.truths.len())]);
+        let insts = inside.insts;
+        let body = Arc::new(Function { name: String::new(), inputs: shape.inputs, insts, outputs });
+        let most = [0, 1, 2, 5][self.random.below(4)];
+        let repeated = self.push(Inst::Loop { most, body, args });
+        for index in 0..state as u32 {
+            // Some results stay unread.
+            if self.random.below(4) > 0 {
+                let part = self.push(Inst::Extract(repeated, index));
+                self.numbers.push(part);
+            }
         }
     }
 

@@ -13,6 +13,7 @@
 //! | `scene` | blocks to the plan of the program |
 
 pub(crate) mod expr;
+mod iterate;
 mod keys;
 pub(crate) mod optics;
 mod scene;
@@ -89,6 +90,8 @@ pub(crate) struct Lowerer<'a> {
     param_inputs: Vec<u32>,
     frame_inputs: u32,
     unrolled: u32,
+    /// Steps of the loops around the expression at hand, multiplied.
+    loop_steps: u32,
     depth: u32,
     diagnostics: Vec<Diagnostic>,
 }
@@ -115,6 +118,7 @@ impl<'a> Lowerer<'a> {
             param_inputs,
             frame_inputs,
             unrolled: 0,
+            loop_steps: 1,
             depth: 0,
             diagnostics: Vec::new(),
         }

@@ -93,10 +93,11 @@ impl Lowerer<'_> {
                 convert(*conversion, operand, expr.ty.components().unwrap_or(1))
             }
             ExprKind::Keys(keys) => self.keys(keys)?,
-            ExprKind::Iterate(_) | ExprKind::RecordField(..) => {
-                let message = "loops cannot be compiled yet";
-                return Err(Box::new(Diagnostic::error("E0405", message, expr.span, "a loop")));
-            }
+            ExprKind::Iterate(iterate) => self.iterate(iterate, expr.span)?,
+            ExprKind::RecordField(base, field) => match self.expr(*base)? {
+                Value::Record(fields) => fields[*field as usize].clone(),
+                other => unreachable!("the checker gives a record, not {other:?}"),
+            },
             // A word whose arguments matter belongs to a style, which is not lowered.
             ExprKind::Choice(word, _) => Value::String((*word).into()),
             ExprKind::BlockName(name) => Value::String(name.as_str().into()),
@@ -118,7 +119,10 @@ impl Lowerer<'_> {
         if let Some(known) = &self.lets[index] {
             return known.clone();
         }
+        // Whatever loop asks for it, it does not depend on that loop.
+        let outer_steps = std::mem::replace(&mut self.loop_steps, 1);
         let value = self.expr(self.hir.lets[index].value);
+        self.loop_steps = outer_steps;
         self.lets[index] = Some(value.clone());
         value
     }

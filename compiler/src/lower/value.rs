@@ -28,6 +28,8 @@ pub(crate) enum Value {
     Phase(Rc<Phase>),
     /// The local point `q`.
     Local(Rc<LocalPoint>),
+    /// The last state of a loop, by field.
+    Record(Rc<[Value]>),
 }
 
 impl Value {
@@ -42,7 +44,8 @@ impl Value {
             | Self::Curve(_)
             | Self::Material(_)
             | Self::Phase(_)
-            | Self::Local(_) => &[],
+            | Self::Local(_)
+            | Self::Record(_) => &[],
         }
     }
 

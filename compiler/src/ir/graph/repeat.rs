@@ -14,7 +14,7 @@
 //! A placeholder varies from point to point, so nothing that depends on it is moved elsewhere. The
 //! states of an outer loop are to an inner one like any other value.
 
-use super::{Graph, cut};
+use super::{Graph, Rate, cut};
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::Ty;
 use std::collections::{HashMap, HashSet};
@@ -56,6 +56,29 @@ impl Graph {
         (0..state).map(|i| self.push(Inst::Extract(tuple, i))).collect()
     }
 
+    /// The numbers behind the last state of a loop of constants, and what computing them cost in
+    /// instructions; nothing if it would cost more than `budget` or a number is not finite.
+    #[must_use]
+    pub fn computed(&self, last: &[ValueId], budget: u64) -> Option<(Vec<f64>, u64)> {
+        let Inst::Extract(tuple, _) = self.inst(*last.first()?) else { return None };
+        let Inst::Loop { body, args, .. } = self.inst(*tuple) else { return None };
+        let cost = cost(self.inst(*tuple));
+        if self.rate(*tuple) != Rate::Constant || cost > budget {
+            return None;
+        }
+        let first: Vec<f64> = args.iter().map(|&arg| self.constant(arg)).collect::<Option<_>>()?;
+        let mut function = Function { inputs: args.len() as u32, ..Function::default() };
+        function.insts.extend((0..function.inputs).map(Inst::Input));
+        let mut inputs = (0..).map(ValueId);
+        function.insts.push(self.inst(*tuple).map_operands(|_| inputs.next().unwrap_or(ValueId(0))));
+        for index in 0..body.state() as u32 {
+            function.outputs.push(ValueId(function.insts.len() as u32));
+            function.insts.push(Inst::Extract(ValueId(function.inputs), index));
+        }
+        let numbers = crate::reference::evaluate(&function, &first, &[], &[]);
+        numbers.iter().all(|number| number.is_finite()).then_some((numbers, cost))
+    }
+
     /// The outputs of a loop's body for values in place of its inputs.
     pub(crate) fn instantiate(&mut self, body: &Function, inputs: &[ValueId]) -> Vec<ValueId> {
         let mut values: Vec<ValueId> = Vec::with_capacity(body.insts.len());
@@ -75,6 +98,22 @@ impl Graph {
             });
         }
         body.outputs.iter().map(|output| values[output.index()]).collect()
+    }
+}
+
+/// Instructions that are computed, each step of a loop counted.
+fn cost(inst: &Inst) -> u64 {
+    match inst {
+        Inst::Constant(_)
+        | Inst::Boolean(_)
+        | Inst::Input(_)
+        | Inst::Uniform(_)
+        | Inst::Apply { .. }
+        | Inst::Extract(..) => 1,
+        Inst::Loop { most, body, .. } => {
+            let step = body.insts.iter().map(cost).fold(1, u64::saturating_add);
+            u64::from(*most).saturating_mul(step)
+        }
     }
 }
 

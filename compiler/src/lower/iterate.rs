@@ -175,3 +175,6 @@ fn too_large(numbers: usize, span: Span) -> Box<Diagnostic> {
     let help = "keep only what changes from step to step, and name the rest with `let` before the loop";
     Box::new(Diagnostic::error("E0407", message, span, label).with_help(help))
 }
+
+#[cfg(test)]
+mod tests;

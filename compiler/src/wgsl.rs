@@ -226,6 +226,24 @@ mod tests {
     }
 
     #[test]
+    fn the_text_of_a_loop_does_not_grow_with_its_steps() {
+        let with = |steps: &str| {
+            // The state changes places, which needs both next values before either is replaced.
+            let body = format!(
+                "fn f(2) {{\n%0 = input 0\n%1 = input 1\n%2 = loop {steps} %0 %1 {{\n%0 = input 0\n%1 = input 1\n\
+                 %2 = less %0 %1\nreturn %1 %0 %2\n}}\n%3 = extract %2 1\nreturn %3\n}}"
+            );
+            let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
+            evaluation_module(&module, FunctionId(0)).expect("naga accepts it")
+        };
+        let (few, many) = (with("8"), with("800"));
+        assert_eq!(few.replace("< 8u", "< 800u"), many);
+        let order = ["v2_n1: f32 = select(v2_s1, v2_s0, v2_2)", "v2_s0 = v2_n0;", "let v3: f32 = v2_s1;"];
+        let places = order.map(|part| few.find(part));
+        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{few}");
+    }
+
+    #[test]
     fn errors_carry_the_message_of_naga() {
         assert!(
             matches!(validate("fn f( {"), Err(WgslError::Parse { message }) if message.contains("expected"))

@@ -66,6 +66,25 @@ fn values_do_not_depend_on_the_batch() {
 }
 
 #[test]
+fn each_point_leaves_a_loop_at_its_own_step() {
+    // Doubled while below 100; the state changes places with a copy at each step.
+    let body = "fn f(1) {\n%0 = input 0\n%1 = loop 12 %0 %0 {\n%0 = input 0\n%1 = input 1\n%2 = constant 100.0\n\
+        %3 = less %0 %2\n%4 = add %0 %0\nreturn %4 %0 %3\n}\n%2 = extract %1 0\n%3 = extract %1 1\nreturn %2 %3\n}";
+    let module = module(vec![text::parse_function(body).expect("well-formed text")]);
+    let inputs = [(0..150).map(|i| i as f32).collect::<Vec<f32>>()];
+    let found = evaluate(&module, &inputs, 150);
+    for (i, &x) in inputs[0].iter().enumerate() {
+        let (mut last, mut before) = (x, x);
+        for _ in 0..12 {
+            if last < 100.0 {
+                (last, before) = (last + last, last);
+            }
+        }
+        assert_eq!([found[0][i], found[1][i]], [last, before], "{x}");
+    }
+}
+
+#[test]
 fn the_choices_of_special_values() {
     let body = "fn f(2) {\n%0 = input 0\n%1 = input 1\n%2 = min %0 %1\n%3 = max %0 %1\n%4 = sqrt %0\n%5 = less %0 %1\n\
         %6 = not %5\n%7 = or %5 %6\n%8 = and %5 %6\n%9 = select %7 %0 %1\n%10 = select %8 %0 %1\nreturn %2 %3 %4 %9 %10\n}";

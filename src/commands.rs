@@ -6,8 +6,8 @@
 mod check;
 mod compile;
 mod diff;
-mod fmt;
 mod explain;
+mod fmt;
 mod params;
 mod progress;
 mod query;

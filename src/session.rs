@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use vol_compiler::frame::Frame;
 use vol_compiler::program::{Field, Program, Slot};
-use vol_compiler::{library, lower, reference};
+use vol_compiler::{library, lower};
 use vol_language::Analysis;
 use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
@@ -219,8 +219,7 @@ impl Session {
     /// Frames per second, as the scene says at its start.
     fn fps(&self, params: &[Vec<f64>]) -> Result<f64, Failure> {
         let Slot(slot) = self.program.render.fps;
-        let inputs = self.program.frame_inputs(params, 0.0, 0.0);
-        let numbers = reference::evaluate(&self.program.module.frame, &inputs, &[], &[]);
+        let numbers = self.program.numbers(params, 0.0, 0.0);
         let fps = numbers[slot as usize];
         if fps > 0.0 && fps.is_finite() {
             return Ok(fps);

@@ -133,6 +133,10 @@ pub struct CurveTable {
     pub length: f64,
     /// The segments the table was made from, coordinates held as [`prepare`] says.
     pub segments: Vec<Quadratic>,
+    /// Angle from U at the start to U at the end, carried on to the tangent at the start; radians.
+    pub turn: f64,
+    /// Angle from U to the centre of curvature where the curve bends first, 0 if nowhere; radians.
+    pub bend_angle: f64,
 }
 
 impl CurveTable {
@@ -159,6 +163,8 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
     let mut pieces = Vec::with_capacity(parts.len());
     let mut offset = 0.0;
     let mut carried: Option<([f64; 3], [f64; 3])> = None;
+    let mut first: Option<([f64; 3], [f64; 3])> = None;
+    let mut bend_angle = None;
     for (i, part) in parts.iter().enumerate() {
         let [enter, leave] = part.tangents_along();
         let entering = match carried {
@@ -167,6 +173,11 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
         };
         let leaving = transport(entering, enter, leave);
         let normal = if part.reversed { leaving } else { entering };
+        first = first.or(Some((entering, enter)));
+        if bend_angle.is_none() && part.bend != [0.0; 3] {
+            // The part bends from its entering tangent towards its leaving one.
+            bend_angle = Some(angle_about(enter, entering, leave));
+        }
         let neighbours = [
             i.checked_sub(1).map_or(0.0, |j| link(&parts[j], part)),
             parts.get(i + 1).map_or(0.0, |next| link(part, next)),
@@ -175,7 +186,15 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
         offset += part.length();
         carried = Some((leaving, leave));
     }
-    CurveTable { pieces, length, segments }
+    let turn = first.zip(carried).map_or(0.0, |((normal, tangent), (last, leave))| {
+        angle_about(tangent, normal, transport(last, leave, tangent))
+    });
+    CurveTable { pieces, length, segments, turn, bend_angle: bend_angle.unwrap_or(0.0) }
+}
+
+/// Angle about a unit vector from one direction across it to another.
+fn angle_about(axis: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
+    dot(to, cross(axis, from)).atan2(dot(to, from))
 }
 
 /// First frame axis U for a unit tangent: the coordinate axis with the smallest |component| (the

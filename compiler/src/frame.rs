@@ -5,10 +5,11 @@
 
 mod camera;
 mod extent;
+mod tube;
 
 use crate::curve::{self, CurveTable, Quadratic};
 use crate::ir::FunctionId;
-use crate::program::{LightKind, Lighting, Program, Slot, Slot3};
+use crate::program::{LightKind, Lighting, Program, Slot, Slot3, TubeSizes};
 use crate::reference;
 use extent::{Solid, Space};
 use glam::DVec3;
@@ -181,11 +182,27 @@ impl Program {
         self.params.iter().map(|param| param.default.clone()).collect()
     }
 
+    /// Inputs of the frame function; measures and the sizes of tubes are 0 until they are known.
+    fn inputs(&self, params: &[Vec<f64>], time: f64, number: f64) -> Vec<f64> {
+        let mut inputs = vec![time, number];
+        inputs.extend(params.iter().flatten());
+        inputs.resize(self.module.frame.inputs as usize, 0.0);
+        inputs
+    }
+
+    /// Outputs of the frame function at a moment, right for all slots but those that depend on measures
+    /// or on the sizes of tubes: enough for the settings of the picture.
+    #[must_use]
+    pub fn numbers(&self, params: &[Vec<f64>], time: f64, number: f64) -> Vec<f64> {
+        reference::evaluate(&self.module.frame, &self.inputs(params, time, number), &[], &[])
+    }
+
     /// The program at one moment: params (one list of components each, in order), time in seconds,
     /// number of the frame, and the size of the picture, which sets the aspect ratio.
     ///
     /// # Errors
-    /// A displacement that has no bound, a light without a direction: a message about the scene.
+    /// A displacement that has no bound, a tube whose surface cannot be marched safely: a message about
+    /// the scene.
     pub fn frame(
         &self,
         params: &[Vec<f64>],
@@ -193,21 +210,25 @@ impl Program {
         number: f64,
         size: [u32; 2],
     ) -> Result<Frame, Diagnostic> {
-        let inputs = self.frame_inputs(params, time, number);
-        let uniforms = self.uniforms(inputs)?;
+        let Known { uniforms, curves, curve_tables, tubes } = self.known(params, time, number)?;
         let at = |slot: Slot| uniforms[slot.0 as usize];
         let at3 = |slots: Slot3| slots.map(at);
         let on = |slot: Slot| at(slot) != 0.0;
-        let curves: Vec<Vec<Quadratic>> =
-            self.curves.iter().map(|curve| control_points(curve, at3)).collect();
-        let curve_tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
-        let space =
-            Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &curve_tables };
+        let space = Space {
+            module: &self.module,
+            uniforms: &uniforms,
+            curves: &curves,
+            tables: &curve_tables,
+            tubes: &tubes,
+        };
         let mut bounds = extent::EMPTY;
         let mut objects = Vec::new();
         for (index, object) in self.objects.iter().enumerate().filter(|(_, object)| on(object.enabled)) {
             let solid = space.solid(&object.extent)?;
             bounds = extent::enclose_finite(bounds, solid.bounds);
+            if !solid.steepness.is_finite() {
+                return Err(tube::unsafe_surface(object.span));
+            }
             objects.push(object_frame(index, object, solid));
         }
         let mut media = Vec::new();
@@ -249,27 +270,50 @@ impl Program {
     }
 }
 
+/// What a frame finds out before its solids.
+struct Known {
+    uniforms: Vec<f64>,
+    curves: Vec<Vec<Quadratic>>,
+    curve_tables: Vec<CurveTable>,
+    tubes: Vec<tube::Measured>,
+}
+
 impl Program {
-    /// Outputs of the frame function once the measures are among its inputs.
-    fn uniforms(&self, mut inputs: Vec<f64>) -> Result<Vec<f64>, Diagnostic> {
-        let uniforms = reference::evaluate(&self.module.frame, &inputs, &[], &[]);
-        if self.measures.is_empty() {
-            return Ok(uniforms);
-        }
-        let at3 = |slots: Slot3| slots.map(|slot| uniforms[slot.0 as usize]);
+    /// Curves, the sizes of tubes, measures, and the outputs of the frame function once these are among
+    /// its inputs.
+    fn known(&self, params: &[Vec<f64>], time: f64, number: f64) -> Result<Known, Diagnostic> {
+        let mut inputs = self.inputs(params, time, number);
+        let evaluate = |inputs: &[f64]| reference::evaluate(&self.module.frame, inputs, &[], &[]);
+        let mut uniforms = evaluate(&inputs);
         let curves: Vec<Vec<Quadratic>> =
-            self.curves.iter().map(|curve| control_points(curve, at3)).collect();
+            self.curves.iter().map(|curve| control_points(curve, &uniforms)).collect();
         let tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
-        let space = Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &tables };
-        for (first, measure) in &self.measures {
-            let numbers = space.measure(measure)?;
-            inputs[*first as usize..][..numbers.len()].copy_from_slice(&numbers);
+        let space =
+            Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &tables, tubes: &[] };
+        let tubes: Vec<tube::Measured> = self.tubes.iter().map(|sizes| space.measure_tube(sizes)).collect();
+        for (sizes, measured) in self.tubes.iter().zip(&tubes) {
+            let first = sizes.first_input as usize;
+            inputs[first..first + TubeSizes::COUNT].copy_from_slice(&measured.numbers);
         }
-        Ok(reference::evaluate(&self.module.frame, &inputs, &[], &[]))
+        if !tubes.is_empty() {
+            uniforms = evaluate(&inputs);
+        }
+        // Measures may be of solids with tubes in them.
+        if !self.measures.is_empty() {
+            let (module, curves, tables) = (&self.module, &curves, &tables);
+            let space = Space { module, uniforms: &uniforms, curves, tables, tubes: &tubes };
+            for (first, measure) in &self.measures {
+                let numbers = space.measure(measure)?;
+                inputs[*first as usize..][..numbers.len()].copy_from_slice(&numbers);
+            }
+            uniforms = evaluate(&inputs);
+        }
+        Ok(Known { uniforms, curves, curve_tables: tables, tubes })
     }
 }
 
-fn control_points(curve: &crate::program::Curve, at3: impl Fn(Slot3) -> [f64; 3]) -> Vec<Quadratic> {
+fn control_points(curve: &crate::program::Curve, uniforms: &[f64]) -> Vec<Quadratic> {
+    let at3 = |slots: Slot3| slots.map(|slot| uniforms[slot.0 as usize]);
     let segments = curve.segments.iter();
     segments.map(|&[a, b, c]| Quadratic { a: at3(a), b: at3(b), c: at3(c) }).collect()
 }

@@ -3,6 +3,7 @@
 //! The checker sees the signatures ([`library`]), the lowerer calls [`lower`], the reference
 //! documentation is generated from both.
 
+mod curve;
 pub(crate) mod math;
 mod noise;
 mod scene;
@@ -34,6 +35,7 @@ pub(crate) struct Builtin {
 static BUILTINS: LazyLock<Vec<Builtin>> = LazyLock::new(|| {
     let mut all = math::builtins();
     all.extend(noise::builtins());
+    all.extend(curve::builtins());
     all.extend(scene::builtins());
     all
 });

@@ -8,10 +8,12 @@
 //! |---|---|
 //! | `value` | what an expression can be at compile time |
 //! | `expr`, `keys` | expressions to values |
+//! | `curve` | curves to chains of quadratic pieces |
 //! | `shape`, `tube` | solids: distance, local coordinates, extent |
 //! | `optics` | materials and phase functions |
 //! | `scene` | blocks to the plan of the program |
 
+pub(crate) mod curve;
 pub(crate) mod expr;
 mod iterate;
 mod keys;
@@ -23,7 +25,7 @@ pub(crate) mod value;
 
 use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
-use crate::program::{Curve, Measure, Program, Slot, Slot3};
+use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
 use vol_language::hir;
@@ -44,9 +46,11 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0405", "a value must be known at compile time"),
     ("E0406", "a local coordinate that this region does not have"),
     ("E0407", "a number outside of what a function takes"),
-    ("E0408", "a surface without a slope: a tube as an object"),
+    ("E0408", "a surface without a slope"),
     ("E0501", "the steepness of a shape is not bounded"),
     ("E0502", "a repeated shape reaches further than the copies that are asked"),
+    ("E0503", "a tube whose surface cannot be marched safely"),
+    ("W0201", "a path with a gap or a corner"),
     ("W0401", "a style does not change pictures yet"),
 ];
 
@@ -81,6 +85,7 @@ pub(crate) struct Lowerer<'a> {
     functions: Vec<Function>,
     curves: Vec<Curve>,
     measures: Vec<(u32, Measure)>,
+    tubes: Vec<TubeSizes>,
     /// Values of the bindings in scope.
     environment: Environment,
     lets: Vec<Option<Lowered<Value>>>,
@@ -112,6 +117,7 @@ impl<'a> Lowerer<'a> {
             functions: Vec::new(),
             curves: Vec::new(),
             measures: Vec::new(),
+            tubes: Vec::new(),
             environment: Environment::new(hir.local_count),
             lets: vec![None; hir.lets.len()],
             arguments: &[],
@@ -189,6 +195,15 @@ impl<'a> Lowerer<'a> {
         (first..first + width).map(|input| self.graph.frame_input(input)).collect()
     }
 
+    /// Adds what each frame has to find out about a tube; returns its index and its numbers.
+    pub(crate) fn tube_sizes(&mut self, sizes: TubeSizes) -> (u32, [ValueId; TubeSizes::COUNT]) {
+        let first_input = self.frame_inputs;
+        self.frame_inputs += TubeSizes::COUNT as u32;
+        self.tubes.push(TubeSizes { first_input, ..sizes });
+        let inputs = std::array::from_fn(|i| self.graph.frame_input(first_input + i as u32));
+        (self.tubes.len() as u32 - 1, inputs)
+    }
+
     /// Cuts out the frame function and cleans up all functions.
     fn finish(&mut self, plan: scene::Plan) -> Program {
         let frame = self.slots.frame_function(&mut self.graph, self.frame_inputs);
@@ -208,6 +223,7 @@ impl<'a> Lowerer<'a> {
             params: params.collect(),
             curves: std::mem::take(&mut self.curves),
             measures: std::mem::take(&mut self.measures),
+            tubes: std::mem::take(&mut self.tubes),
             objects: plan.objects,
             media: plan.media,
             lights: plan.lights,

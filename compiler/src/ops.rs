@@ -115,6 +115,19 @@ pub enum Op {
     /// Closest point of a curve to (x, y, z); data is the curve. Results: t, arc length, length of
     /// the curve, x and y in the frame, distance, overshoot, stretch.
     Closest,
+    /// How the closest point of a curve moves with (x, y, z); data is the curve. Results: the unit
+    /// vector from the foot to the position (0 on the curve), the unit tangent there, change of t per
+    /// arc length, and of arc length per length along the tangent: 1 / stretch, at most 20, or 0 where
+    /// the foot stays at an end or a corner.
+    ClosestGradient,
+}
+
+impl Op {
+    /// Whether the data is a curve.
+    #[must_use]
+    pub fn reads_curve(self) -> bool {
+        matches!(self, Self::Closest | Self::ClosestGradient)
+    }
 }
 
 /// What rules of operations may look at beside their operands.
@@ -141,7 +154,8 @@ pub type IntervalRule = fn(&[Interval], Context<'_>) -> Results<Interval>;
 pub type ErrorRule = fn(&[f64], &[f64], &Results<f64>, Context<'_>) -> Results<f64>;
 
 /// Derivative of each result along one direction, from the operands, the results (one value, or
-/// the tuple) and the operands' derivatives. `None` where the operation has no derivative rule.
+/// the tuple) and the operands' derivatives. `None` where the operation has no derivative rule; where
+/// the list is short the last results have none.
 pub type DerivativeRule = fn(&mut Graph, u32, &[ValueId], ValueId, &[ValueId]) -> Option<Vec<ValueId>>;
 
 /// One row of the table.
@@ -213,6 +227,7 @@ pub static TABLE: &[Operation] = &[
     noise::WORLEY_GRADIENT,
     noise::HASH,
     curve::CLOSEST,
+    curve::CLOSEST_GRADIENT,
 ];
 
 /// The row of an operation.

@@ -31,6 +31,8 @@ pub struct Program {
     /// Numbers of shapes that enter the frame function, with the first input that each sets. They
     /// depend on none of one another.
     pub measures: Vec<(u32, Measure)>,
+    /// What each frame finds out about tubes.
+    pub tubes: Vec<TubeSizes>,
     /// Solids.
     pub objects: Vec<Object>,
     /// Participating media.
@@ -69,6 +71,57 @@ pub struct Param {
 pub struct Curve {
     /// Control points a, b, c of each segment.
     pub segments: Vec<[Slot3; 3]>,
+}
+
+/// A tube about which each frame finds out some numbers before it runs the frame function: they are
+/// further inputs of that function, after the params.
+///
+/// In this order: the largest radius; within what distance from the axis the wall may be approached by
+/// the slope of the radius; the factor that makes `|P - Q| - r` safe there; from what distance on
+/// the flat ends do not count; the factor that makes the length to an end safe; the largest such
+/// distance; by how much the frame of a closed curve is turned per length, so that it fits; the angle
+/// from U to the centre of curvature, to be subtracted.
+#[derive(Clone, Copy, Debug)]
+pub struct TubeSizes {
+    /// The curve.
+    pub curve: u32,
+    /// (t, arc length) to radius: 2 inputs, 1 output.
+    pub radius: FunctionId,
+    /// How the radius changes.
+    pub slope: TubeSlope,
+    /// How it ends.
+    pub caps: Caps,
+    /// First input of the frame function that it sets.
+    pub first_input: u32,
+}
+
+impl TubeSizes {
+    /// How many numbers there are.
+    pub const COUNT: usize = 8;
+}
+
+/// How a tube ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Caps {
+    /// Cut off by the planes across the ends of the axis.
+    Flat,
+    /// By parts of balls as thick as the tube.
+    Round,
+    /// Not at all: it goes on straight for ever, with the coordinates of its ends.
+    Open,
+    /// In itself: the curve is closed.
+    Joined,
+}
+
+/// How the radius of a tube changes along it.
+#[derive(Clone, Copy, Debug)]
+pub enum TubeSlope {
+    /// It does not.
+    Flat,
+    /// (t, arc length) to the derivatives along both: 2 inputs, 2 outputs.
+    Known(FunctionId),
+    /// In a way that has no derivative.
+    Unknown,
 }
 
 /// A solid.
@@ -210,6 +263,10 @@ pub enum Extent {
         curve: u32,
         /// (t, arc length) to radius, held at [`LEAST_RADIUS`] by its users: 2 inputs, 1 output.
         radius: FunctionId,
+        /// How it ends.
+        caps: Caps,
+        /// Index in [`Program::tubes`]; without, the distance is exact.
+        sizes: Option<u32>,
     },
     /// Smallest box around all.
     Union(Vec<Extent>),
@@ -315,18 +372,5 @@ impl Measure {
             Self::Radius(_) => 1,
             Self::Box(_) => 6,
         }
-    }
-}
-
-impl Program {
-    /// Inputs of the frame function, measures not yet known and 0: time in seconds, number of the
-    /// frame, params (one list of components each, in order), measures.
-    #[must_use]
-    pub fn frame_inputs(&self, params: &[Vec<f64>], time: f64, number: f64) -> Vec<f64> {
-        let mut inputs = vec![time, number];
-        inputs.extend(params.iter().flatten());
-        let measures: u32 = self.measures.iter().map(|(_, measure)| measure.width()).sum();
-        inputs.extend((0..measures).map(|_| 0.0));
-        inputs
     }
 }

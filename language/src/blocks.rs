@@ -131,6 +131,11 @@ fn medium() -> Vec<Key> {
         ),
         key("absorb", of_local(Type::Color), "absorption coefficient per unit density and length; default 0"),
         key("emit", of_local(Type::Color), "emitted radiance per unit density and length; default 0"),
+        key(
+            "conserve_mass",
+            Type::Bool,
+            "whether density is per volume of the region's own map, divided by q.stretch; default as the tube says",
+        ),
         key("phase", Type::Phase, "phase function; default isotropic()"),
         key("lighting", Type::Choice(ChoiceKind::Lighting), "how light reaches it; default shadowed"),
         key("when", Type::Bool, "whether the medium is there; default true"),

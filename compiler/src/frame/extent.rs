@@ -3,10 +3,11 @@
 mod warp;
 
 use super::Aabb;
+use super::tube::Measured;
 use crate::curve::{CurveTable, Quadratic};
 use crate::ir::{FunctionId, Module};
 use crate::ops::interval::Interval;
-use crate::program::{Extent, LEAST_RADIUS, Measure, Slot, Slot3};
+use crate::program::{Caps, Extent, LEAST_RADIUS, Measure, Slot, Slot3};
 use crate::reference;
 use glam::DVec3;
 use vol_language::diag::Diagnostic;
@@ -34,6 +35,9 @@ pub(super) struct Solid {
     pub(super) cells: Vec<Box3>,
     /// Largest length of the gradient of the distance; 1 for distances proper.
     pub(super) steepness: f64,
+    /// Whether the distance is only a bound, so that growing by some of it may move the wall farther,
+    /// though never out of the box grown by as much.
+    loose: bool,
 }
 
 impl Solid {
@@ -54,8 +58,10 @@ impl Solid {
         // A cell is the box of a slice. What is nearer than `by` to its rim may be off the slice and
         // off the rim, by that much each; and shrinking a slice does not make it thinner.
         let wider = std::f64::consts::SQRT_2 * by.max(0.0);
+        let bounds = grown(self.bounds, by);
         let cells = self.cells.into_iter().map(|b| grown(b, wider)).collect();
-        Self { bounds: grown(self.bounds, by), cells, ..self }
+        let cells = if self.loose && by > 0.0 { vec![bounds] } else { cells };
+        Self { bounds, cells, ..self }
     }
 }
 
@@ -65,6 +71,8 @@ pub(super) struct Space<'a> {
     pub(super) uniforms: &'a [f64],
     pub(super) curves: &'a [Vec<Quadratic>],
     pub(super) tables: &'a [CurveTable],
+    /// What is known of tubes; nothing while it is being found out.
+    pub(super) tubes: &'a [Measured],
 }
 
 /// Stands for what has no end where a number must be finite in f32.
@@ -98,13 +106,22 @@ impl Space<'_> {
     /// # Errors
     /// A displacement without a bound.
     pub(super) fn solid(&self, extent: &Extent) -> Result<Solid, Diagnostic> {
-        let exact = |bounds| Solid { bounds, cells: vec![bounds], steepness: 1.0 };
+        let exact = |bounds| Solid { bounds, cells: vec![bounds], steepness: 1.0, loose: false };
         Ok(match extent {
             Extent::Unbounded => exact(ALL),
             Extent::Box { lo, hi } => exact(ordered(self.at3(*lo), self.at3(*hi))),
-            Extent::Tube { curve, radius } => {
-                let cells = self.tube_cells(*curve as usize, *radius);
-                Solid { cells, ..exact(self.tube(*curve as usize, *radius)) }
+            Extent::Tube { curve, radius, caps, sizes } => {
+                let measured = sizes.map(|index| self.tubes[index as usize]);
+                let safe = measured.is_none_or(|measured| measured.safe) && *caps != Caps::Open;
+                let solid = match caps {
+                    Caps::Open => exact(ALL),
+                    Caps::Flat | Caps::Round | Caps::Joined => {
+                        let cells = self.tube_cells(*curve as usize, *radius, *caps);
+                        Solid { cells, ..exact(self.tube(*curve as usize, *radius)) }
+                    }
+                };
+                let loose = measured.is_some_and(|measured| measured.loose);
+                Solid { steepness: if safe { 1.0 } else { f64::INFINITY }, loose, ..solid }
             }
             Extent::Union(parts) => self.union(parts)?,
             Extent::Intersection(parts) => self.intersection(parts)?,
@@ -151,12 +168,13 @@ impl Space<'_> {
     }
 
     fn union(&self, parts: &[Extent]) -> Result<Solid, Diagnostic> {
-        let mut solid = Solid { bounds: EMPTY, cells: Vec::new(), steepness: 1.0 };
+        let mut solid = Solid { bounds: EMPTY, cells: Vec::new(), steepness: 1.0, loose: false };
         for part in parts {
             let part = self.solid(part)?;
             solid.bounds = enclose(solid.bounds, part.bounds);
             solid.cells.extend(part.cells);
             solid.steepness = solid.steepness.max(part.steepness);
+            solid.loose |= part.loose;
         }
         if solid.cells.len() > MOST_CELLS {
             solid.cells = vec![solid.bounds];
@@ -167,7 +185,7 @@ impl Space<'_> {
     /// The inside is in the cells of every part: those of the part with most of them are kept, as
     /// they are. Clipped cells could be empty, and an empty box does not grow back.
     fn intersection(&self, parts: &[Extent]) -> Result<Solid, Diagnostic> {
-        let mut solid = Solid { bounds: ALL, cells: Vec::new(), steepness: 1.0 };
+        let mut solid = Solid { bounds: ALL, cells: Vec::new(), steepness: 1.0, loose: false };
         for part in parts {
             let part = self.solid(part)?;
             solid.bounds = common(solid.bounds, part.bounds);
@@ -175,6 +193,7 @@ impl Space<'_> {
                 solid.cells = part.cells;
             }
             solid.steepness = solid.steepness.max(part.steepness);
+            solid.loose |= part.loose;
         }
         if solid.cells.len() <= 1 {
             solid.cells = vec![solid.bounds];
@@ -186,6 +205,12 @@ impl Space<'_> {
     fn tube(&self, curve: usize, radius: FunctionId) -> Box3 {
         let points = self.curves[curve].iter().flat_map(|s| [s.a, s.b, s.c]);
         let hull = points.fold(EMPTY, |b, p| enclose(b, Box3 { lo: p, hi: p }));
+        let largest = self.largest_radius(curve, radius);
+        grown(hull, largest)
+    }
+
+    /// Largest radius of a tube, at least 0.
+    pub(super) fn largest_radius(&self, curve: usize, radius: FunctionId) -> f64 {
         let length = self.tables[curve].length;
         let mut largest: f64 = 0.0;
         for part in 0..CURVE_PARTS {
@@ -194,20 +219,25 @@ impl Space<'_> {
             let inputs = [Interval::new(from, to), Interval::new(0.0, length)];
             largest = largest.max(self.interval(radius, &inputs)[0].hi);
         }
-        grown(hull, largest)
+        largest
     }
 
     /// Boxes around consecutive parts of a tube: each that of the control points of the part of a
-    /// segment, grown by what the largest radius there reaches across the axis. The ends are flat, so
-    /// the offset from a foot inside is across the axis, but at a kink it may have any direction.
-    fn tube_cells(&self, curve: usize, radius: FunctionId) -> Vec<Box3> {
+    /// segment, grown by what the largest radius there reaches across the axis. The
+    /// offset from a foot inside is across the axis, but at a kink or an end that is not flat it may
+    /// have any direction.
+    fn tube_cells(&self, curve: usize, radius: FunctionId, caps: Caps) -> Vec<Box3> {
         let segments = &self.curves[curve];
         let parts = (MOST_CELLS / segments.len().max(1)).clamp(1, SEGMENT_CELLS);
         let count = (segments.len() * parts) as f64;
         let arc_length = Interval::new(0.0, self.tables[curve].length);
         let fastest = segments.iter().flat_map(|s| [velocity(s, 0.0), velocity(s, 1.0)].map(DVec3::length));
         let slow = SLOW * fastest.fold(0.0, f64::max);
-        let smooth = |place: usize| place == 0 || place == segments.len() || joins(segments, place, slow);
+        let smooth = |place: usize| match place {
+            0 => caps == Caps::Flat,
+            _ if place == segments.len() => caps == Caps::Flat,
+            _ => joins(segments, place, slow),
+        };
         let mut boxes = Vec::with_capacity(segments.len() * parts);
         for (index, segment) in segments.iter().enumerate() {
             for part in 0..parts {
@@ -225,7 +255,7 @@ impl Space<'_> {
         boxes.chunks(run).map(|run| run.iter().copied().fold(EMPTY, enclose)).collect()
     }
 
-    fn interval(&self, function: FunctionId, inputs: &[Interval]) -> Vec<Interval> {
+    pub(super) fn interval(&self, function: FunctionId, inputs: &[Interval]) -> Vec<Interval> {
         reference::interval(self.module.function(function), inputs, self.uniforms, self.curves)
     }
 

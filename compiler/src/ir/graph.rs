@@ -254,7 +254,7 @@ impl Slots {
 fn asks_curves(inst: &Inst) -> bool {
     match inst {
         Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => false,
-        Inst::Apply { op, .. } => *op == Op::Closest,
+        Inst::Apply { op, .. } => op.reads_curve(),
         Inst::Loop { body, .. } => body.insts.iter().any(asks_curves),
     }
 }

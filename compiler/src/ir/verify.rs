@@ -22,7 +22,7 @@
 pub mod random;
 
 use super::{Function, Inst, MAX_STATE, MAX_STEPS, Module, ValueId};
-use crate::ops::{self, Op, Ty};
+use crate::ops::{self, Ty};
 
 /// What breaks an invariant, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -224,7 +224,7 @@ fn operands_fit(f: &Function, value: ValueId, inst: &Inst) -> Checked {
 fn data_fits(f: &Function, value: ValueId, inst: &Inst, curves: u32) -> Checked {
     let Inst::Apply { op, data, .. } = inst else { return Ok(()) };
     let fits = match op {
-        Op::Closest => *data < curves,
+        op if op.reads_curve() => *data < curves,
         other => *data == 0 || ops::operation(*other).has_data,
     };
     if fits {
@@ -304,6 +304,7 @@ fn outputs_are_numbers(f: &Function, outputs: &[ValueId]) -> Checked {
 mod tests {
     use super::*;
     use crate::ir::text;
+    use crate::ops::Op;
 
     /// What the verifier says about a function of one input, two uniforms and one curve.
     fn verdict(body: &str) -> String {

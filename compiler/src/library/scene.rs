@@ -1,4 +1,4 @@
-//! Shapes, curves, materials and phase functions.
+//! Shapes, materials and phase functions.
 //!
 //! | room | holds |
 //! |---|---|
@@ -14,7 +14,6 @@ use super::{Builtin, call, required};
 use crate::ir::ValueId;
 use crate::ir::graph::Rate;
 use crate::lower::optics::{Material, Phase};
-use crate::lower::tube::CurveValue;
 use crate::lower::value::Value;
 use crate::lower::{Lowered, Lowerer, depends_on_position};
 use std::rc::Rc;
@@ -23,17 +22,10 @@ use vol_language::source::Span;
 use vol_language::ty::Type;
 
 pub(super) fn builtins() -> Vec<Builtin> {
-    [
-        primitives::builtins(),
-        combinations::builtins(),
-        transforms::builtins(),
-        curves(),
-        materials(),
-        phases(),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    [primitives::builtins(), combinations::builtins(), transforms::builtins(), materials(), phases()]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// A whole number within bounds that is known at compile time; `what` is how messages call it.
@@ -51,38 +43,6 @@ fn whole(
     let message = format!("{what} must be a whole number from {least} to {most}");
     let diagnostic = Diagnostic::error("E0407", message, span, format!("here it is {number}"));
     Err(Box::new(diagnostic.with_help(format!("write a number such as {}", least.max(3).min(most)))))
-}
-
-fn curves() -> Vec<Builtin> {
-    let point = |name| required(name, Type::Vec3);
-    vec![
-        call(
-            "line",
-            vec![point("a"), point("b")],
-            Type::Curve,
-            "straight line from a to b",
-            |lowerer, _, a| {
-                let (from, to) = (a[0].vec3(), a[1].vec3());
-                let half = lowerer.graph.number(0.5);
-                let middle = [0, 1, 2].map(|i| {
-                    let sum = lowerer.graph.add(from[i], to[i]);
-                    lowerer.graph.mul(sum, half)
-                });
-                curve(vec![[from, middle, to]])
-            },
-        ),
-        call(
-            "bezier",
-            vec![point("a"), point("b"), point("c")],
-            Type::Curve,
-            "quadratic Bezier curve from a to c with control point b",
-            |_, _, a| curve(vec![[a[0].vec3(), a[1].vec3(), a[2].vec3()]]),
-        ),
-    ]
-}
-
-fn curve(segments: Vec<[[ValueId; 3]; 3]>) -> Lowered<Value> {
-    Ok(Value::Curve(Rc::new(CurveValue { segments })))
 }
 
 fn materials() -> Vec<Builtin> {

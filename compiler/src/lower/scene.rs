@@ -305,6 +305,7 @@ fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> L
     let density = lowerer.closure(block, "density", 1.0, 1)?;
     let density = lowerer.call(&density, &[Value::Local(Rc::clone(point))])?.scalar();
     let density = lowerer.graph.max(density, zero);
+    let density = conserved(lowerer, block, point, density)?;
     let mut coefficient = |key: &str, default: f64| -> Lowered<[ValueId; 3]> {
         let closure = lowerer.closure(block, key, default, 3)?;
         let given = optics::color(lowerer, &closure, point)?;
@@ -322,6 +323,26 @@ fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> L
         extinction: total.map(|c| graph.mul(density, c)),
         emission: emit.map(|c| graph.mul(density, c)),
     })
+}
+
+/// The density, divided by the stretch of volume where a key of the medium or its tube asks for that:
+/// then it is the density of the unit cylinder, and the mass does not depend on the tube's shape.
+fn conserved(
+    lowerer: &mut Lowerer<'_>,
+    block: &Block,
+    point: &Rc<LocalPoint>,
+    density: ValueId,
+) -> Lowered<ValueId> {
+    let asked = match lowerer.entry(block, "conserve_mass")? {
+        Some((value, span)) => lowerer.compile_time(value.scalar(), "`conserve_mass`", span)? != 0.0,
+        None => point.region.conserves_mass(),
+    };
+    if !asked {
+        return Ok(density);
+    }
+    let field = vol_language::hir::LocalField::Stretch;
+    let stretch = point.region.local_field(lowerer, point.world, field, block.span)?;
+    Ok(lowerer.graph.div(density, stretch[0]))
 }
 
 fn lighting(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Lighting> {

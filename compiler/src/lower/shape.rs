@@ -51,7 +51,7 @@ pub(crate) struct Shape {
 pub(crate) enum Kind {
     /// Not made of others.
     Primitive(Primitive),
-    /// See [`Tube`]; not a distance bound, so a region only.
+    /// Exact with round caps and one radius, else a lower bound; see [`Tube::distance`].
     Tube(Tube),
     /// The points of a box at the origin, given by its half extents, where a field is negative. Its
     /// distance is the field (as it is at the nearest point of the box) or that of the box if larger;
@@ -210,6 +210,23 @@ impl Shape {
         }
     }
 
+    /// Whether media in the shape keep their mass: a tube that asks for it, under transforms too.
+    pub(crate) fn conserves_mass(&self) -> bool {
+        match &self.kind {
+            Kind::Tube(tube) => tube.conserves_mass(),
+            Kind::Transformed { child, .. }
+            | Kind::Repeated { child, .. }
+            | Kind::Rounded { child, .. }
+            | Kind::Shell { child, .. }
+            | Kind::Displaced { child, .. } => child.conserves_mass(),
+            Kind::Primitive(_)
+            | Kind::Implicit { .. }
+            | Kind::Union { .. }
+            | Kind::Intersection { .. }
+            | Kind::Difference { .. } => false,
+        }
+    }
+
     /// A coordinate of the region's own map at a world position.
     pub(crate) fn local_field(
         &self,
@@ -218,17 +235,22 @@ impl Shape {
         field: LocalField,
         span: Span,
     ) -> Lowered<Vec<ValueId>> {
+        if let Kind::Tube(tube) = &self.kind {
+            return tube.local_field(lowerer, p, field);
+        }
         if field == LocalField::Depth {
             let distance = self.distance(lowerer, p)?;
             return Ok(vec![lowerer.graph.apply(Op::Neg, &[distance])]);
         }
-        if let Kind::Tube(tube) = &self.kind {
-            return tube.local_field(lowerer, p, field);
-        }
         match &self.kind {
             Kind::Transformed { child, transform } => {
                 let inner = transform.to_child(&mut lowerer.graph, p);
-                return child.local_field(lowerer, inner, field, span);
+                let local = child.local_field(lowerer, inner, field, span)?;
+                if field != LocalField::Stretch {
+                    return Ok(local);
+                }
+                let volume = transform.volume(&mut lowerer.graph);
+                return Ok(vec![lowerer.graph.mul(local[0], volume)]);
             }
             Kind::Repeated { child, copies } => {
                 let (inner, _) = copies.nearest(lowerer, child, p)?;
@@ -377,8 +399,8 @@ fn value_and_slope(
 pub(crate) fn gradient(lowerer: &mut Lowerer<'_>, value: ValueId, span: Span) -> Lowered<Vec<ValueId>> {
     crate::passes::gradient::gradient(&mut lowerer.graph, value, &[0, 1, 2]).ok_or_else(|| {
         let message = "this surface has no slope by which it could be lit and marched";
-        let label = "it contains a tube, or an `fbm` whose lacunarity or gain changes with the position";
-        let help = "fill a tube with a medium, `medium name { region: … }`, or use `capsule`; make lacunarity and gain constant";
+        let label = "it contains an `fbm` whose lacunarity or gain changes with the position";
+        let help = "make lacunarity and gain constant";
         Box::new(Diagnostic::error("E0408", message, span, label).with_help(help))
     })
 }

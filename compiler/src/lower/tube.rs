@@ -1,34 +1,63 @@
 //! Tubes: a curve as axis, radius and twist as functions along it (Moinet 2022, section 3).
+//!
+//! A point belongs to the tube by its closest point on the axis, its foot: where the tube overlaps
+//! itself the nearest part of the axis decides, and the coordinates of the point are those at its foot.
 
+use super::curve::CurveValue;
 use super::shape::Kind;
 use super::value::Closure;
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
+use crate::ir::graph::{Graph, Rate};
 use crate::ops::Op;
-use crate::program::{Curve, Extent, LEAST_RADIUS};
+use crate::program::{Caps, Curve, Extent, LEAST_RADIUS, TubeSizes, TubeSlope};
 use std::rc::Rc;
+use vol_language::diag::Diagnostic;
 use vol_language::hir::LocalField;
 use vol_language::source::Span;
 
-/// A curve as the scene builds it: quadratic Bezier segments, each starting where the last ended.
+/// What a tube is asked for beside its curve.
 #[derive(Clone, Debug)]
-pub(crate) struct CurveValue {
-    /// Control points.
-    pub(crate) segments: Vec<[[ValueId; 3]; 3]>,
+pub(crate) struct Outline {
+    /// Of (t, arc length).
+    pub(crate) radius: Rc<Closure>,
+    /// Of (t, arc length).
+    pub(crate) twist: Rc<Closure>,
+    /// Whether local y runs over 0..1 (the noise stretches with the curve) or over the arc length.
+    pub(crate) stretch: bool,
+    /// Of a curve that is not closed.
+    pub(crate) caps: Caps,
+    /// Whether local x points towards the centre of curvature.
+    pub(crate) frenet: bool,
+    /// Whether media thin out where the tube is wide or long.
+    pub(crate) conserve_mass: bool,
 }
 
 /// A tube: all points whose closest point on the curve is nearer than the radius there.
-///
-/// Its "distance" is `max(|P - Q(t)| - radius(t), overshoot)`: zero at the wall and the flat ends
-/// and smooth near them, but not a bound to march by (`algorithms.md` §3.2).
 #[derive(Clone, Debug)]
 pub(crate) struct Tube {
     /// Index in [`crate::program::Program::curves`].
-    curve: u32,
-    radius: Rc<Closure>,
-    twist: Rc<Closure>,
-    /// Whether local y runs over 0..1 (the noise stretches with the curve) or over the arc length.
-    stretch: bool,
+    index: u32,
+    curve: Rc<CurveValue>,
+    outline: Outline,
+    /// Whether the radius changes along the curve.
+    varies: bool,
+    sizes: Option<Sizes>,
+}
+
+/// Numbers about the tube that each frame finds out: see [`TubeSizes`].
+#[derive(Clone, Debug)]
+struct Sizes {
+    /// Index in [`crate::program::Program::tubes`].
+    index: u32,
+    largest: ValueId,
+    shell: ValueId,
+    wall_scale: ValueId,
+    end_limit: ValueId,
+    end_scale: ValueId,
+    end_depth: ValueId,
+    twist: ValueId,
+    twist_rate: ValueId,
 }
 
 /// The closest point of the axis and the tube's own numbers there.
@@ -44,57 +73,138 @@ struct Foot {
     radius: ValueId,
 }
 
-/// A tube around a curve. `radius` and `twist` are functions of (t, arc length).
+/// A tube around a curve.
 pub(crate) fn tube(
     lowerer: &mut Lowerer<'_>,
-    curve: &CurveValue,
-    radius: Rc<Closure>,
-    twist: Rc<Closure>,
-    stretch: bool,
+    curve: Rc<CurveValue>,
+    outline: Outline,
     span: Span,
 ) -> Lowered<Kind> {
+    if outline.frenet && curve.segments.len() > 1 && !curve.closed {
+        let message = "only a single bend has a Frenet frame that goes round smoothly";
+        let label = "this curve has several pieces";
+        let help = "leave `frame` out, or use `bezier` with three points or `circle`";
+        return Err(Box::new(Diagnostic::error("E0407", message, span, label).with_help(help)));
+    }
     let mut segments = Vec::with_capacity(curve.segments.len());
     for [a, b, c] in &curve.segments {
         let what = "a control point";
         let point = |lowerer: &mut Lowerer<'_>, p: &[ValueId; 3]| lowerer.slots(*p, what, span);
         segments.push([point(lowerer, a)?, point(lowerer, b)?, point(lowerer, c)?]);
     }
-    let curve = lowerer.curve(Curve { segments });
-    Ok(Kind::Tube(Tube { curve, radius, twist, stretch }))
+    let index = lowerer.curve(Curve { segments });
+    let mut tube = Tube { index, curve, outline, varies: false, sizes: None };
+    tube.measure(lowerer)?;
+    Ok(Kind::Tube(tube))
 }
 
 impl Tube {
+    /// Finds out whether the radius varies and what the frames have to find out.
+    fn measure(&mut self, lowerer: &mut Lowerer<'_>) -> Lowered<()> {
+        let radius = self.radius_along(lowerer)?;
+        self.varies = lowerer.graph.rate(radius) == Rate::Point;
+        let exact = !self.varies && matches!(self.caps(), Caps::Round | Caps::Open);
+        if exact && !self.outline.frenet {
+            return Ok(());
+        }
+        let slope = if self.varies {
+            let slopes = crate::passes::gradient::gradient(&mut lowerer.graph, radius, &[0, 1]);
+            slopes.map_or(TubeSlope::Unknown, |slopes| {
+                TubeSlope::Known(lowerer.function("radius slope", 2, &slopes))
+            })
+        } else {
+            TubeSlope::Flat
+        };
+        let radius = lowerer.function("radius", 2, &[radius]);
+        let sizes = TubeSizes { curve: self.index, radius, slope, caps: self.caps(), first_input: 0 };
+        let (index, numbers) = lowerer.tube_sizes(sizes);
+        let [largest, shell, wall_scale, end_limit, end_scale, end_depth, end_twist, frenet] = numbers;
+        let zero = lowerer.graph.number(0.0);
+        let twist = if self.outline.frenet { frenet } else { zero };
+        let twist_rate = if self.curve.closed && !self.outline.frenet { end_twist } else { zero };
+        self.sizes = Some(Sizes {
+            index,
+            largest,
+            shell,
+            wall_scale,
+            end_limit,
+            end_scale,
+            end_depth,
+            twist,
+            twist_rate,
+        });
+        Ok(())
+    }
+
+    /// The radius as a function of inputs 0 and 1, the kernels' t and the arc length.
+    fn radius_along(&self, lowerer: &mut Lowerer<'_>) -> Lowered<ValueId> {
+        let (t, l) = (lowerer.graph.input(0), lowerer.graph.input(1));
+        let t = self.curve.parameter(&mut lowerer.graph, t);
+        Ok(lowerer.call_numbers(&self.outline.radius, &[t, l])?.scalar())
+    }
+
     fn foot(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<Foot> {
-        let results = lowerer.graph.apply_all(Op::Closest, self.curve, &p);
+        let results = lowerer.graph.apply_all(Op::Closest, self.index, &p);
         let [t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor] = results[..] else {
             unreachable!("the operation table gives the closest point eight results")
         };
-        let radius = lowerer.call_numbers(&self.radius, &[t, arc_length])?.scalar();
+        let t = self.curve.parameter(&mut lowerer.graph, t);
+        let radius = lowerer.call_numbers(&self.outline.radius, &[t, arc_length])?.scalar();
         let least = lowerer.graph.number(LEAST_RADIUS);
         let radius = lowerer.graph.max(radius, least);
         Ok(Foot { t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor, radius })
     }
 
+    /// Signed distance bound: its size never exceeds the distance to the surface of the tube, given
+    /// the numbers of [`crate::frame`]'s `tube` module, where the proof is.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
         let foot = self.foot(lowerer, p)?;
         let graph = &mut lowerer.graph;
-        let wall = graph.sub(foot.distance, foot.radius);
-        // Flat ends: inside, the nearer end is -l or l - L away; outside, the foot stays at the end
-        // and the overshoot grows from 0. Together they are continuous with slope 1 along the axis.
-        let before = graph.apply(Op::Neg, &[foot.arc_length]);
-        let after = graph.sub(foot.arc_length, foot.curve_length);
-        let ends = graph.max(before, after);
-        let zero = graph.number(0.0);
-        let beyond = graph.apply(Op::Less, &[zero, foot.overshoot]);
-        let ends = graph.select(beyond, foot.overshoot, ends);
-        Ok(graph.max(wall, ends))
+        let wall = self.wall(graph, &foot);
+        Ok(match &self.sizes {
+            Some(sizes) if self.caps() == Caps::Flat => {
+                let ends = flat_ends(graph, &foot, sizes);
+                graph.max(wall, ends)
+            }
+            Some(_) | None => wall,
+        })
+    }
+
+    fn caps(&self) -> Caps {
+        if self.curve.closed { Caps::Joined } else { self.outline.caps }
+    }
+
+    /// Beyond the radius, as the caps have it: `|P - Q| - r`.
+    fn beyond_radius(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
+        let off = if self.caps() == Caps::Open { graph.length(&[foot.x, foot.y]) } else { foot.distance };
+        graph.sub(off, foot.radius)
+    }
+
+    /// Bound on the distance to the wall.
+    fn wall(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
+        let beyond = self.beyond_radius(graph, foot);
+        let marched = self.varies && self.caps() != Caps::Open;
+        let Some(sizes) = self.sizes.as_ref().filter(|_| marched) else { return beyond };
+        // Far from the axis only the largest radius counts; near it the slope of the radius.
+        let far = graph.sub(foot.distance, sizes.largest);
+        let scaled = graph.mul(beyond, sizes.wall_scale);
+        let most = graph.sub(sizes.shell, sizes.largest);
+        let near = graph.min(scaled, most);
+        let near = graph.max(far, near);
+        let within = graph.apply(Op::Less, &[foot.distance, sizes.shell]);
+        graph.select(within, near, far)
     }
 
     pub(crate) fn extent(&self, lowerer: &mut Lowerer<'_>) -> Lowered<Extent> {
-        let (t, l) = (lowerer.graph.input(0), lowerer.graph.input(1));
-        let radius = lowerer.call_numbers(&self.radius, &[t, l])?.scalar();
+        let radius = self.radius_along(lowerer)?;
         let radius = lowerer.function("radius", 2, &[radius]);
-        Ok(Extent::Tube { curve: self.curve, radius })
+        let sizes = self.sizes.as_ref().map(|sizes| sizes.index);
+        Ok(Extent::Tube { curve: self.index, radius, caps: self.caps(), sizes })
+    }
+
+    /// Whether media in the tube keep their mass, whatever its shape.
+    pub(crate) fn conserves_mass(&self) -> bool {
+        self.outline.conserve_mass
     }
 
     pub(crate) fn local_field(
@@ -110,7 +220,7 @@ impl Tube {
                 let graph = &mut lowerer.graph;
                 let x = graph.div(x, foot.radius);
                 let y = graph.div(y, foot.radius);
-                let along = if self.stretch {
+                let along = if self.outline.stretch {
                     graph.div(foot.arc_length, foot.curve_length)
                 } else {
                     foot.arc_length
@@ -125,18 +235,34 @@ impl Tube {
                 vec![lowerer.graph.apply(Op::Atan2, &[y, x])]
             }
             LocalField::Radius => vec![lowerer.graph.div(foot.distance, foot.radius)],
-            LocalField::Depth => {
-                let distance = self.distance(lowerer, p)?;
-                vec![lowerer.graph.apply(Op::Neg, &[distance])]
-            }
+            LocalField::Depth => vec![self.depth(&mut lowerer.graph, &foot)],
             LocalField::Stretch => vec![stretch(lowerer, &foot)],
         })
     }
 
+    /// Distance to the wall along the radius or to the nearer flat end along the axis: smooth where
+    /// the bound by which surfaces are marched is not.
+    fn depth(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
+        let mut beyond = self.beyond_radius(graph, foot);
+        if self.caps() == Caps::Flat {
+            let inside = from_nearer_end(graph, foot);
+            let inside = graph.apply(Op::Neg, &[inside]);
+            let ends = beyond_end(graph, foot, foot.overshoot, inside);
+            beyond = graph.max(beyond, ends);
+        }
+        graph.apply(Op::Neg, &[beyond])
+    }
+
     /// Offset from the axis, turned by the twist.
     fn twisted(&self, lowerer: &mut Lowerer<'_>, foot: &Foot) -> Lowered<(ValueId, ValueId)> {
-        let angle = lowerer.call_numbers(&self.twist, &[foot.t, foot.arc_length])?.scalar();
+        let mut angle = lowerer.call_numbers(&self.outline.twist, &[foot.t, foot.arc_length])?.scalar();
         let graph = &mut lowerer.graph;
+        if let Some(sizes) = &self.sizes {
+            // A closed curve comes back with its frame turned: spread over the length it fits.
+            let turn = graph.mul(sizes.twist_rate, foot.arc_length);
+            let turn = graph.add(turn, sizes.twist);
+            angle = graph.add(angle, turn);
+        }
         if graph.constant(angle) == Some(0.0) {
             return Ok((foot.x, foot.y));
         }
@@ -145,6 +271,30 @@ impl Tube {
         let (sx, cy) = (graph.mul(sine, foot.x), graph.mul(cosine, foot.y));
         Ok((graph.sub(cx, sy), graph.add(sx, cy)))
     }
+}
+
+/// Length along the axis from the foot to the nearer end.
+fn from_nearer_end(graph: &mut Graph, foot: &Foot) -> ValueId {
+    let rest = graph.sub(foot.curve_length, foot.arc_length);
+    graph.min(foot.arc_length, rest)
+}
+
+/// `outside` beyond an end of the axis, where the foot stays at the end, else `inside`.
+fn beyond_end(graph: &mut Graph, foot: &Foot, outside: ValueId, inside: ValueId) -> ValueId {
+    let zero = graph.number(0.0);
+    let beyond = graph.apply(Op::Less, &[zero, foot.overshoot]);
+    graph.select(beyond, outside, inside)
+}
+
+/// Bound on the distance to the flat ends, positive beyond them.
+fn flat_ends(graph: &mut Graph, foot: &Foot, sizes: &Sizes) -> ValueId {
+    let limit = graph.sub(sizes.end_limit, foot.distance);
+    let outside = graph.min(foot.overshoot, limit);
+    let inside = from_nearer_end(graph, foot);
+    let inside = graph.mul(inside, sizes.end_scale);
+    let inside = graph.min(inside, sizes.end_depth);
+    let inside = graph.apply(Op::Neg, &[inside]);
+    beyond_end(graph, foot, outside, inside)
 }
 
 /// Volume of the tube's map against the unit cylinder: `r^2 L (1 - kappa o.N)`, kept from 0 on the

@@ -1,8 +1,8 @@
 //! What an expression can be while a scene is compiled.
 
+use super::curve::CurveValue;
 use super::optics::{Material, Phase};
 use super::shape::Shape;
-use super::tube::CurveValue;
 use crate::ir::ValueId;
 use std::rc::Rc;
 use vol_language::hir::{ExprId, LocalId};

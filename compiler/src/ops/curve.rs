@@ -1,4 +1,4 @@
-//! Row of the closest point of a curve.
+//! Rows of the closest point of a curve and of how it moves.
 //!
 //! The distance is 1-Lipschitz in the position, which gives its interval and its error. The other
 //! results depend on where the foot is, and that jumps on the medial axis and runs away near the focal
@@ -8,7 +8,7 @@
 
 use super::error::{UNIT, decision, operand};
 use super::interval::Interval;
-use super::{Context, MAX_RESULTS, Op, Operation, Results, Ty};
+use super::{Context, MAX_RESULTS, Op, Operation, Results, Ty, slope};
 use crate::curve::Quadratic;
 use crate::error_bound::Bounded;
 use crate::ir::ValueId;
@@ -42,13 +42,102 @@ pub(super) const CLOSEST: Operation = Operation {
     meaning: |x, context| results(&closest([x[0], x[1], x[2]], segments(context))),
     interval: |x, context| bounds([x[0], x[1], x[2]], segments(context)),
     error: |x, e, _, context| errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
-    derivative: none,
+    derivative: along,
     wgsl: "vol_closest(vec3f({0}, {1}, {2}), {first}, {count})",
     wgsl_extract: &[".t", ".arc_length", ".curve_length", ".x", ".y", ".distance", ".overshoot", ".stretch"],
     domain: &[(-4.0, 4.0); 3],
 };
 
-/// The foot jumps, so there is no derivative to be had.
+/// Largest change of arc length reported: where it is reached the stretch is [`LEAST_STRETCH`].
+const LARGEST_SLIDE: f64 = 1.0 / LEAST_STRETCH;
+/// Rate of change of t along a curve that is a point or stands still, and the largest reported.
+const LARGEST_RATE: f64 = 1e15;
+
+pub(super) const CLOSEST_GRADIENT: Operation = Operation {
+    op: Op::ClosestGradient,
+    name: "closest_gradient",
+    args: &[Ty::Number; 3],
+    results: &[Ty::Number; MAX_RESULTS],
+    has_data: true,
+    meaning: |x, context| movement([x[0], x[1], x[2]], segments(context)),
+    interval: |_, _| movement_bounds(),
+    error: |x, e, _, context| movement_errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
+    derivative: none,
+    wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), {first}, {count})",
+    wgsl_extract: &[
+        ".direction.x",
+        ".direction.y",
+        ".direction.z",
+        ".tangent.x",
+        ".tangent.y",
+        ".tangent.z",
+        ".rate",
+        ".slide",
+    ],
+    domain: &[(-4.0, 4.0); 3],
+};
+
+/// Derivatives along a motion of the position, all but that of the stretch, which has no rule. Where
+/// the foot jumps there is none; they are those on the side that was chosen.
+///
+/// The frame turns with the foot but about axes across the tangent only, so the offset across the
+/// tangent has the coordinates x and y whose gradients are the frame's axes U and V:
+/// with o across, `x o - y T x o = (x^2 + y^2) U`, and `V = T x U`.
+fn along(g: &mut Graph, data: u32, args: &[ValueId], node: ValueId, d: &[ValueId]) -> Option<Vec<ValueId>> {
+    let results = g.extract_all(Op::Closest, node);
+    let moves = g.apply_all(Op::ClosestGradient, data, args);
+    let (direction, tangent) = ([moves[0], moves[1], moves[2]], [moves[3], moves[4], moves[5]]);
+    let zero = g.number(0.0);
+    let forward = slope::along(g, &tangent, d);
+    let distance = slope::along(g, &direction, d);
+    let arc_length = g.mul(moves[7], forward);
+    let t = g.mul(moves[6], arc_length);
+    // Beyond an end the overshoot grows outwards.
+    let lean = g.dot(&direction, &tangent);
+    let behind = g.apply(Op::Less, &[lean, zero]);
+    let backward = g.apply(Op::Neg, &[forward]);
+    let outward = g.select(behind, backward, forward);
+    let beyond = g.apply(Op::Less, &[zero, results[6]]);
+    let overshoot = g.select(beyond, outward, zero);
+    let [along_u, along_v] = frame_motion(g, &results, direction, tangent, d);
+    Some(vec![t, arc_length, zero, along_u, along_v, distance, overshoot])
+}
+
+/// Components of a motion along the axes U and V of the frame; 0 on the curve.
+fn frame_motion(
+    g: &mut Graph,
+    results: &[ValueId],
+    direction: [ValueId; 3],
+    tangent: [ValueId; 3],
+    d: &[ValueId],
+) -> [ValueId; 2] {
+    let (x, y) = (results[3], results[4]);
+    let lean = g.dot(&direction, &tangent);
+    let across = [0, 1, 2].map(|i| {
+        let part = g.mul(lean, tangent[i]);
+        let rest = g.sub(direction[i], part);
+        g.mul(results[5], rest)
+    });
+    let turned = cross_product(g, tangent, across);
+    let squared = g.dot(&[x, y], &[x, y]);
+    let over = slope::over_positive(g, 1.0, squared);
+    let u = [0, 1, 2].map(|i| {
+        let (first, second) = (g.mul(x, across[i]), g.mul(y, turned[i]));
+        let sum = g.sub(first, second);
+        g.mul(sum, over)
+    });
+    let v = cross_product(g, tangent, u);
+    [slope::along(g, &u, d), slope::along(g, &v, d)]
+}
+
+fn cross_product(g: &mut Graph, a: [ValueId; 3], b: [ValueId; 3]) -> [ValueId; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+        let (first, second) = (g.mul(a[i], b[j]), g.mul(a[j], b[i]));
+        g.sub(first, second)
+    })
+}
+
+/// How a foot moves has no rule of its own.
 fn none(_: &mut Graph, _: u32, _: &[ValueId], _: ValueId, _: &[ValueId]) -> Option<Vec<ValueId>> {
     None
 }
@@ -134,6 +223,44 @@ fn errors(p: [Bounded; 3], segments: &[Quadratic]) -> Results<f64> {
     found.map(|error| if error.is_nan() { f64::INFINITY } else { error })
 }
 
+/// The reference's answer in the order of the results; no direction without segments.
+fn movement(p: [f64; 3], segments: &[Quadratic]) -> Results<f64> {
+    let Some(moves) = curve::slopes(p, segments) else { return [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0] };
+    let ([dx, dy, dz], [tx, ty, tz]) = (moves.direction, moves.tangent);
+    [dx, dy, dz, tx, ty, tz, moves.rate.min(LARGEST_RATE), moves.slide]
+}
+
+/// What the results mean is all that is known: the foot may jump.
+fn movement_bounds() -> Results<Interval> {
+    let unit = Interval::outward(-1.0, 1.0);
+    let (rate, slide) = (Interval::new(0.0, LARGEST_RATE), Interval::outward(0.0, LARGEST_SLIDE));
+    [unit, unit, unit, unit, unit, unit, rate, slide]
+}
+
+/// Errors of the results; see the header for what they are worth.
+fn movement_errors(p: [Bounded; 3], segments: &[Quadratic]) -> Results<f64> {
+    let closest_errors = errors(p, segments);
+    let middle = p.map(|x| x.value);
+    let (at, Some(moves)) = (closest(middle, segments), curve::slopes(middle, segments)) else {
+        return [0.0; MAX_RESULTS];
+    };
+    let shape = shape_at(at.t, segments);
+    let slide = closest_errors[1];
+    // The direction turns with the offset and the foot, the tangent with the foot.
+    let turn = 2.0 * (closest_errors[5] + slide) / at.distance + 8.0 * UNIT;
+    let bent = (shape.bend + DISTANCE_ERROR) * slide + 16.0 * UNIT;
+    // Whether the foot stays is decided by how the offset leans.
+    let lean: f64 = moves.direction.iter().zip(moves.tangent).map(|(a, b)| a * b).sum();
+    let near_end = (at.t * segments.len() as f64).fract();
+    let inside = near_end > 1e-4 && near_end < 1.0 - 1e-4;
+    let sure = decision(inside || (lean.abs() - 1e-3).abs() > 2.0 * (turn + bent));
+    let speeds = shape.rate * (shape.speed_change * slide + 16.0 * UNIT);
+    let stretched = closest_errors[7] * moves.slide * moves.slide;
+    let stretched = 2.0 * stretched + 16.0 * UNIT * moves.slide + sure;
+    let all = [turn, turn, turn, bent, bent, bent, speeds, stretched];
+    all.map(|error| if error.is_nan() { f64::INFINITY } else { error })
+}
+
 /// How a curve runs at a foot.
 struct Shape {
     /// Change of the parameter per length.
@@ -142,11 +269,13 @@ struct Shape {
     bend: f64,
     /// Change of the curvature per length.
     bend_change: f64,
+    /// Relative change of the speed per length.
+    speed_change: f64,
 }
 
 /// The worst of the segments that meet at `t`.
 fn shape_at(t: f64, segments: &[Quadratic]) -> Shape {
-    let mut worst = Shape { rate: 0.0, bend: 0.0, bend_change: 0.0 };
+    let mut worst = Shape { rate: 0.0, bend: 0.0, bend_change: 0.0, speed_change: 0.0 };
     for (i, segment) in segments.iter().enumerate() {
         let u = t * segments.len() as f64 - i as f64;
         // Segments too short to count never hold the foot.
@@ -161,6 +290,7 @@ fn shape_at(t: f64, segments: &[Quadratic]) -> Shape {
         let bend = norm(cross(b1, b2)) / (2.0 * half_speed.powi(3));
         worst.rate = worst.rate.max(1.0 / (2.0 * half_speed * segments.len() as f64));
         worst.bend = worst.bend.max(bend);
+        worst.speed_change = worst.speed_change.max(along.abs() / half_speed.powi(3));
         worst.bend_change = worst.bend_change.max(1.5 * bend * along.abs() / half_speed.powi(3));
     }
     worst

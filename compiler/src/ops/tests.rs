@@ -16,7 +16,7 @@ fn curves() -> Vec<Vec<Quadratic>> {
 }
 
 fn data(row: &Operation, random: &mut Random) -> u32 {
-    if row.has_data && row.op != Op::Closest { random.below(3) as u32 } else { 0 }
+    if row.has_data && !row.op.reads_curve() { random.below(3) as u32 } else { 0 }
 }
 
 /// A number from the domain of operand `i`; truth values are 0 or 1.
@@ -30,7 +30,7 @@ fn drawn(row: &Operation, i: usize, random: &mut Random) -> f64 {
 
 #[test]
 fn table_is_in_order_and_complete() {
-    assert_eq!(TABLE.len(), Op::Closest as usize + 1);
+    assert_eq!(TABLE.len(), Op::ClosestGradient as usize + 1);
     for (i, row) in TABLE.iter().enumerate() {
         assert_eq!(row.op as usize, i, "{}", row.name);
         assert_eq!(by_name(row.name).map(|found| found.op), Some(row.op), "names differ");
@@ -65,7 +65,7 @@ fn intervals_enclose_meanings() {
     let curves = curves();
     let mut random = Random::new(1);
     for row in TABLE {
-        let boxes = if row.op == Op::Closest { 40 } else { 500 };
+        let boxes = if row.op.reads_curve() { 40 } else { 500 };
         for _ in 0..boxes {
             let context = Context { data: data(row, &mut random), curves: &curves };
             let size = [0.0, 1e-6, 1e-2, 0.3, 1.0][random.below(5)];
@@ -182,6 +182,46 @@ fn derivatives_match_differences() {
 }
 
 #[test]
+fn derivatives_of_the_closest_point_match_differences() {
+    let curves = curves();
+    let mut graph = Graph::default();
+    let args = operands(&mut graph, operation(Op::Closest));
+    let results = graph.apply_all(Op::Closest, 0, &args);
+    // All but the stretch.
+    for (index, &result) in results[..7].iter().enumerate() {
+        let slopes = gradient(&mut graph, result, &[0, 1, 2]).expect("there is a rule");
+        let outputs = [&[result], &slopes[..]].concat();
+        let function = Slots::default().point_function(&mut graph, "closest", 3, &outputs);
+        let (mut compared, mut moving, mut random) = (0, 0, Random::new(8));
+        for _ in 0..60 {
+            let x: Vec<f64> = [(); 3].map(|()| random.between(-2.0, 3.0)).to_vec();
+            let value = |x: &[f64]| reference::evaluate(&function, x, &[], &curves);
+            let exact = value(&x);
+            for axis in 0..3 {
+                let difference = |step: f64| {
+                    let (mut low, mut high) = (x.clone(), x.clone());
+                    low[axis] -= step;
+                    high[axis] += step;
+                    (value(&high)[0] - value(&low)[0]) / (2.0 * step)
+                };
+                let (coarse, fine) = (difference(2e-5), difference(1e-5));
+                let scale = 1.0 + fine.abs();
+                if (coarse - fine).abs() < 1e-5 * scale && fine.abs() < 15.0 {
+                    let found = exact[axis + 1];
+                    assert!(
+                        (found - fine).abs() < 1e-4 * scale,
+                        "result {index} {x:?} {axis}: {found} {fine}"
+                    );
+                    compared += 1;
+                    moving += usize::from(fine.abs() > 1e-3);
+                }
+            }
+        }
+        assert!(compared > 120 && (moving > 20 || index == 2), "{index}: {compared} places, {moving} moving");
+    }
+}
+
+#[test]
 fn factors_of_octaves_have_no_derivative() {
     let mut graph = Graph::default();
     let args = operands(&mut graph, operation(Op::Fbm));
@@ -216,7 +256,7 @@ fn folding_agrees_with_meanings() {
 fn worst_share(row: &Operation, spread: f64, random: &mut Random) -> f64 {
     let curves = curves();
     let mut worst: f64 = 0.0;
-    for _ in 0..if row.op == Op::Closest { 300 } else { 4000 } {
+    for _ in 0..if row.op.reads_curve() { 300 } else { 4000 } {
         let context = Context { data: data(row, random), curves: &curves };
         let mut given: Vec<f32> = (0..row.args.len()).map(|i| drawn(row, i, random) as f32).collect();
         // The number of octaves is whole, or every sum is undecided.

@@ -116,7 +116,7 @@ fn step(inst: &Inst, lookup: &impl Fn(ValueId) -> Inst) -> Simplified {
 fn computed(inst: &Inst, result: usize, lookup: &impl Fn(ValueId) -> Inst) -> Option<Inst> {
     let Inst::Apply { op, data, args } = inst else { return None };
     // The closest point depends on control points that are not constants.
-    if *op == Op::Closest {
+    if op.reads_curve() {
         return None;
     }
     let operands: Option<Vec<f64>> = args.iter().map(|&a| constant(&lookup(a))).collect();
@@ -195,7 +195,7 @@ fn identity(op: Op, x: &Operands<'_>) -> Simplified {
         Op::Perlin | Op::PerlinGradient | Op::Fbm | Op::FbmGradient => Simplified::Same,
         Op::Perlin4 | Op::Perlin4Gradient | Op::Value | Op::ValueGradient => Simplified::Same,
         Op::Simplex | Op::SimplexGradient | Op::Worley | Op::WorleyGradient => Simplified::Same,
-        Op::Hash | Op::Closest => Simplified::Same,
+        Op::Hash | Op::Closest | Op::ClosestGradient => Simplified::Same,
     }
 }
 

@@ -26,7 +26,7 @@ type Slopes = Option<Vec<Vec<ValueId>>>;
 ///
 /// * `value`: of type [`Ty::Number`]
 /// * returns: `None` if the value depends on an input through an operation without a derivative rule
-///   (the closest point of a curve, the factors of a sum of octaves)
+///   (the stretch about a curve, the factors of a sum of octaves)
 pub fn gradient(graph: &mut Graph, value: ValueId, inputs: &[u32]) -> Option<Vec<ValueId>> {
     let (zero, one) = (graph.number(0.0), graph.number(1.0));
     let mut known: HashMap<ValueId, Slopes> = HashMap::new();
@@ -65,9 +65,8 @@ fn differentiate(
         let slopes = match graph.inst(node).clone() {
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Uniform(_) | Inst::Input(_) => continue,
             Inst::Extract(tuple, index) => {
-                let parts =
-                    |slopes: &Vec<Vec<ValueId>>| slopes.iter().map(|s| vec![s[index as usize]]).collect();
-                known[&tuple].as_ref().map(parts)
+                let part = |slopes: &Vec<ValueId>| slopes.get(index as usize).map(|&slope| vec![slope]);
+                known[&tuple].as_ref().and_then(|slopes| slopes.iter().map(part).collect())
             }
             Inst::Apply { op, data, args } => {
                 let step = Step { node, op, data, args, zero };
@@ -167,16 +166,16 @@ mod tests {
     }
 
     #[test]
-    fn curves_have_none_unless_they_do_not_matter() {
+    fn stretch_has_none_unless_it_does_not_matter() {
         let mut graph = Graph::default();
         let p = [0, 1, 2].map(|i| graph.input(i));
-        let distance = graph.apply_all(Op::Closest, 0, &p)[5];
-        assert_eq!(gradient(&mut graph, distance, &[0, 1, 2]), None);
-        let side = graph.apply(Op::Less, &[distance, p[0]]);
+        let stretch = graph.apply_all(Op::Closest, 0, &p)[7];
+        assert_eq!(gradient(&mut graph, stretch, &[0, 1, 2]), None);
+        let side = graph.apply(Op::Less, &[stretch, p[0]]);
         let picked = graph.select(side, p[0], p[1]);
         assert!(gradient(&mut graph, picked, &[0, 1, 2]).is_some());
         let constant = [1.0, 2.0, 3.0].map(|x| graph.number(x));
-        let fixed = graph.apply_all(Op::Closest, 0, &constant)[5];
+        let fixed = graph.apply_all(Op::Closest, 0, &constant)[7];
         let moved = graph.add(fixed, p[0]);
         assert!(gradient(&mut graph, moved, &[0]).is_some());
     }

@@ -46,7 +46,74 @@ pub fn closest(p: Vector, segments: &[Quadratic]) -> Option<ReferencePoint> {
     let Some(last) = arms.last() else {
         return segments.first().map(|s| at_point(p, s.a));
     };
-    let curve_length = last.offset + last.length_to(1.0);
+    let Nearest { index, u, distance, gap } = nearest(p, &arms);
+    let arm = &arms[index];
+    let offset = sub(p, arm.point(u));
+    let tangent = arm.tangent(u);
+    let normal = arm.normal(u);
+    let first_end = if index == 0 && u == 0.0 { -dot(offset, tangent) } else { 0.0 };
+    let last_end = if index + 1 == arms.len() && u == 1.0 { dot(offset, tangent) } else { 0.0 };
+    Some(ReferencePoint {
+        t: arm.t(u),
+        arc_length: arm.offset + arm.length_to(u),
+        curve_length: last.offset + last.length_to(1.0),
+        x: dot(offset, normal),
+        y: dot(offset, cross(tangent, normal)),
+        distance,
+        overshoot: first_end.max(last_end).max(0.0),
+        stretch: (1.0 - dot(offset, arm.curvature(u))).clamp(0.0, 1e6),
+        gap,
+    })
+}
+
+/// How the closest point of a curve moves, f64.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReferenceSlopes {
+    /// Unit vector from the foot to the position; 0 on the curve.
+    pub direction: Vector,
+    /// Unit tangent at the foot.
+    pub tangent: Vector,
+    /// Change of t per arc length.
+    pub rate: f64,
+    /// Change of arc length per length along the tangent: 1 / stretch, at most 20; 0 where the foot
+    /// stays at an end or a corner.
+    pub slide: f64,
+}
+
+/// How the closest point of the curve moves with the position; `None` for no segments.
+///
+/// * rule shared with the kernels: the foot stays where it is the end of a segment and the offset
+///   leans along the tangent by more than 1e-3 of its length
+pub fn slopes(p: Vector, segments: &[Quadratic]) -> Option<ReferenceSlopes> {
+    let arms = arms_of(segments);
+    if arms.is_empty() {
+        let offset = sub(p, segments.first()?.a);
+        let still = ReferenceSlopes { direction: [0.0; 3], tangent: [0.0, 0.0, 1.0], rate: 0.0, slide: 0.0 };
+        let direction = if norm(offset) > 0.0 { unit(offset) } else { [0.0; 3] };
+        return Some(ReferenceSlopes { direction, ..still });
+    }
+    let Nearest { index, u, distance, .. } = nearest(p, &arms);
+    let arm = &arms[index];
+    let (offset, tangent) = (sub(p, arm.point(u)), arm.tangent(u));
+    let stays = (u == 0.0 || u == 1.0) && dot(offset, tangent).abs() > 1e-3 * distance;
+    let stretch = (1.0 - dot(offset, arm.curvature(u))).max(0.05);
+    Some(ReferenceSlopes {
+        direction: if distance > 0.0 { offset.map(|x| x / distance) } else { [0.0; 3] },
+        tangent,
+        rate: arm.t_share / (2.0 * norm(arm.half_velocity(u))).max(1e-15),
+        slide: if stays { 0.0 } else { 1.0 / stretch },
+    })
+}
+
+/// The nearest foot.
+struct Nearest {
+    index: usize,
+    u: f64,
+    distance: f64,
+    gap: f64,
+}
+
+fn nearest(p: Vector, arms: &[Arm]) -> Nearest {
     let (mut best, mut candidates) = ((f64::INFINITY, 0, 0.0), Vec::new());
     for (i, arm) in arms.iter().enumerate() {
         for u in arm.feet(p) {
@@ -63,25 +130,10 @@ pub fn closest(p: Vector, segments: &[Quadratic]) -> Option<ReferencePoint> {
     if u == 1.0 && arms.get(index + 1).is_some_and(touches) {
         (index, u) = (index + 1, 0.0);
     }
-    let arm = &arms[index];
-    let t = arm.t(u);
+    let t = arms[index].t(u);
     let rivals = candidates.iter().filter(|c| (c.1 - t).abs() > 1e-3);
-    let offset = sub(p, arm.point(u));
-    let tangent = arm.tangent(u);
-    let normal = arm.normal(u);
-    let first_end = if index == 0 && u == 0.0 { -dot(offset, tangent) } else { 0.0 };
-    let last_end = if index + 1 == arms.len() && u == 1.0 { dot(offset, tangent) } else { 0.0 };
-    Some(ReferencePoint {
-        t,
-        arc_length: arm.offset + arm.length_to(u),
-        curve_length,
-        x: dot(offset, normal),
-        y: dot(offset, cross(tangent, normal)),
-        distance,
-        overshoot: first_end.max(last_end).max(0.0),
-        stretch: (1.0 - dot(offset, arm.curvature(u))).clamp(0.0, 1e6),
-        gap: rivals.map(|c| c.0).fold(f64::INFINITY, f64::min) - distance,
-    })
+    let gap = rivals.map(|c| c.0).fold(f64::INFINITY, f64::min) - distance;
+    Nearest { index, u, distance, gap }
 }
 
 /// A curve that is one point, tangent +z.

@@ -13,6 +13,13 @@ const VOL_REACH: f32 = 1e8;
 // Largest stretch reported.
 const VOL_STRETCH: f32 = 1e6;
 
+// A foot at an end is held there if its offset leans along the tangent by more than this share.
+const VOL_LEAN: f32 = 1e-3;
+// Where the stretch is smaller, a foot is taken to slide as if it were this.
+const VOL_LEAST_STRETCH: f32 = 0.05;
+// Largest change of t per length reported.
+const VOL_LARGEST_RATE: f32 = 1e15;
+
 // A point seen from its closest point on a curve.
 struct VolCurvePoint {
     t: f32,
@@ -228,6 +235,62 @@ fn vol_describe(p: vec3f, word: u32, t: f32) -> VolCurvePoint {
         max(max(behind_first, beyond_last), 0.0),
         vol_hold(stretch, 0.0, VOL_STRETCH),
     );
+}
+
+// How the closest point moves with the position.
+struct VolCurveSlopes {
+    direction: vec3f,
+    tangent: vec3f,
+    rate: f32,
+    slide: f32,
+}
+
+// How the foot of `p` at the point `t` of a piece moves.
+fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
+    let b1 = vol_curve_vector(word + 6u);
+    let b2 = vol_curve_vector(word + 9u);
+    let t0 = vol_curve_vector(word + 12u);
+    let bend = vol_curve_vector(word + 21u);
+    let t_span = vol_curves[word + 30u];
+    // Offset and half velocity at the foot.
+    let w = vol_from_point(p, word);
+    let r = vol_reach(w, b1, b2, t);
+    let v = b1 + (t * b2);
+    let vv = max(vol_dot(v, v), VOL_TINY);
+    // Unit tangent along the curve.
+    let is_straight = vol_curves[word + 36u] != 0.0;
+    let speed = sqrt(vv);
+    let per_speed = vol_curves[word + 32u] / speed;
+    let tangent = select(v * per_speed, t0, is_straight);
+    // Unit offset.
+    let distance = sqrt(vol_dot(r, r));
+    let per_distance = select(0.0, -1.0 / max(distance, VOL_TINY), distance > 0.0);
+    // How far the foot slides: not at all where it is held.
+    let at_end = (t == 0.0) | (t == 1.0);
+    let held = at_end & (abs(vol_dot(r, tangent)) > (VOL_LEAN * distance));
+    let bent = vol_dot(r, vol_cross(bend, v)) / vv;
+    let stretch = max(1.0 + (bent / (2.0 * vv)), VOL_LEAST_STRETCH);
+    return VolCurveSlopes(
+        r * per_distance,
+        tangent,
+        min(abs(t_span) / (2.0 * speed), VOL_LARGEST_RATE),
+        select(1.0 / stretch, 0.0, held | (t_span == 0.0)),
+    );
+}
+
+// How the closest point of a whole curve moves: pieces `first .. first + count` of the buffer.
+fn vol_closest_gradient(point: vec3f, first: u32, count: u32) -> VolCurveSlopes {
+    let p = vol_held_point(point);
+    // Visit the pieces along the curve.
+    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
+    for (var index = 0u; index < count; index = index + 1u) {
+        search = vol_visit(search, p, (first + index) * VOL_PIECE_WORDS, index);
+    }
+    // Describe how the foot moves on the winner.
+    if (count == 0u) {
+        return VolCurveSlopes(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
+    }
+    return vol_slopes(p, (first + search.piece) * VOL_PIECE_WORDS, search.t);
 }
 
 // Closest point of a whole curve: pieces `first .. first + count` of the buffer.

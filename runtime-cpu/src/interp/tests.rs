@@ -135,6 +135,22 @@ fn closest_points_are_those_of_the_kernel() {
 }
 
 #[test]
+fn closest_gradients_are_those_of_the_kernel() {
+    let body = "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = closest_gradient[0] %0 %1 %2\n\
+        %4 = extract %3 1\n%5 = extract %3 3\n%6 = extract %3 6\n%7 = extract %3 7\nreturn %4 %5 %6 %7\n}";
+    let module = module(vec![text::parse_function(body).expect("well-formed text")]);
+    let inputs = arguments(9, 100, 3);
+    let found = evaluate(&module, &inputs, 100);
+    let table = &tables()[0];
+    for i in 0..100 {
+        let p = [inputs[0][i], inputs[1][i], inputs[2][i]];
+        let expected = crate::math::curve::closest_gradient(p, &table.pieces);
+        let expected = [expected.direction[1], expected.tangent[0], expected.rate, expected.slide];
+        assert_eq!([found[0][i], found[1][i], found[2][i], found[3][i]], expected);
+    }
+}
+
+#[test]
 fn noise_is_that_of_the_kernels() {
     use crate::math::noise;
     for seed in [0, 9] {

@@ -23,6 +23,13 @@ const REACH: f32 = 1e8;
 /// Largest stretch reported.
 const STRETCH: f32 = 1e6;
 
+/// A foot at an end is held there if its offset leans along the tangent by more than this share.
+const LEAN: f32 = 1e-3;
+/// Where the stretch is smaller, a foot is taken to slide as if it were this.
+const LEAST_STRETCH: f32 = 0.05;
+/// Largest change of t per length reported.
+const LARGEST_RATE: f32 = 1e15;
+
 /// A point seen from its closest point on a curve.
 ///
 /// Scale, in the errors below, is the larger of the distance and the size of the curve. All but that of
@@ -300,6 +307,76 @@ pub fn describe(p: [f32; 3], piece: &Piece, t: f32) -> CurvePoint {
         distance: dot(r, r).sqrt(),
         overshoot: greater(greater(behind_first, beyond_last), 0.0),
         stretch: hold(stretch, 0.0, STRETCH),
+    }
+}
+
+/// How the closest point moves with the position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveSlopes {
+    /// Unit vector from the foot to the position, the gradient of the distance; 0 on the curve. Error
+    /// 4e-6 of the scale over the distance, where the foot is unique as said at [`CurvePoint`].
+    pub direction: [f32; 3],
+    /// Unit tangent at the foot, along the curve; error 1e-5 where the curve bends by less than 1 / size.
+    pub tangent: [f32; 3],
+    /// Change of t per arc length, at most 1e15; 0 for a point.
+    pub rate: f32,
+    /// Change of arc length per length along the tangent: 1 / stretch, at most 20; 0 where the foot
+    /// stays at an end or a corner, the offset leaning by more than 1e-3 of its length.
+    pub slide: f32,
+}
+
+/// What [`closest_gradient`] returns for a curve without pieces.
+const STILL: CurveSlopes =
+    CurveSlopes { direction: [1.0, 0.0, 0.0], tangent: [0.0, 0.0, 1.0], rate: 0.0, slide: 0.0 };
+
+/// How the foot of `p` at the point `t` of a piece moves.
+#[inline(always)]
+pub fn slopes(p: [f32; 3], piece: &Piece, t: f32) -> CurveSlopes {
+    // Offset and half velocity at the foot.
+    let w = from_point(p, piece);
+    let r = reach(w, piece, t);
+    let v =
+        [piece.b1[0] + (t * piece.b2[0]), piece.b1[1] + (t * piece.b2[1]), piece.b1[2] + (t * piece.b2[2])];
+    let vv = greater(dot(v, v), TINY);
+    // Unit tangent along the curve.
+    let straight = piece.straight != 0.0;
+    let speed = vv.sqrt();
+    let per_speed = piece.sense / speed;
+    let t0 = piece.tangent;
+    let tangent = [
+        if straight { t0[0] } else { v[0] * per_speed },
+        if straight { t0[1] } else { v[1] * per_speed },
+        if straight { t0[2] } else { v[2] * per_speed },
+    ];
+    // Unit offset.
+    let distance = dot(r, r).sqrt();
+    let per_distance = if distance > 0.0 { -1.0 / greater(distance, TINY) } else { 0.0 };
+    // How far the foot slides: not at all where it is held.
+    let at_end = (t == 0.0) | (t == 1.0);
+    let held = at_end & (dot(r, tangent).abs() > LEAN * distance);
+    let bent = dot(r, cross(piece.bend, v)) / vv;
+    let stretch = greater(1.0 + (bent / (2.0 * vv)), LEAST_STRETCH);
+    CurveSlopes {
+        direction: [r[0] * per_distance, r[1] * per_distance, r[2] * per_distance],
+        tangent,
+        rate: lesser(piece.t_span.abs() / (2.0 * speed), LARGEST_RATE),
+        slide: if held | (piece.t_span == 0.0) { 0.0 } else { 1.0 / stretch },
+    }
+}
+
+/// How the closest point of a whole curve moves: see [`closest`] for which one that is.
+#[inline(always)]
+pub fn closest_gradient(p: [f32; 3], pieces: &[Piece]) -> CurveSlopes {
+    let p = held_point(p);
+    // Visit the pieces along the curve.
+    let mut search = Search::START;
+    for (index, piece) in (0u32..).zip(pieces) {
+        search = search.visit(p, piece, index);
+    }
+    // Describe how the foot moves on the winner.
+    match pieces.get(search.piece as usize) {
+        Some(piece) => slopes(p, piece, search.t),
+        None => STILL,
     }
 }
 

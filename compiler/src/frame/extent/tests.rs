@@ -52,15 +52,16 @@ fn cells_cover_tubes() {
     let mut seed = 1;
     let curves = axes(&mut seed);
     let tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
-    let space = Space { module: &module, uniforms: &[], curves: &curves, tables: &tables };
+    let space = Space { module: &module, uniforms: &[], curves: &curves, tables: &tables, tubes: &[] };
     let inside = |solid: &Solid, p: [f64; 3]| {
         let within = |b: &Box3| (0..3).all(|i| b.lo[i] <= p[i] && p[i] <= b.hi[i]);
         solid.cells.iter().any(within)
     };
     let mut slices = (0, 0);
     for (index, segments) in curves.iter().enumerate() {
-        let tube = || Extent::Tube { curve: index as u32, radius: FunctionId(0) };
-        let solid = space.solid(&tube()).expect("bounded");
+        let tube = |caps| Extent::Tube { curve: index as u32, radius: FunctionId(0), caps, sizes: None };
+        let solid = space.solid(&tube(Caps::Flat)).expect("bounded");
+        let round = space.solid(&tube(Caps::Round)).expect("bounded");
         assert!(solid.cells.len() <= MOST_CELLS && !solid.cells.is_empty());
         let wider = solid.clone().grown(0.3);
         for _ in 0..4000 {
@@ -68,6 +69,7 @@ fn cells_cover_tubes() {
             let foot = reference::curve::closest(p, segments).expect("not empty");
             let wall = foot.distance - radius(foot.t);
             let ends = (-foot.arc_length).max(foot.arc_length - foot.curve_length);
+            assert!(wall >= 0.0 || inside(&round, p), "curve {index}, round: {p:?} {foot:?}");
             let region = wall.max(if foot.overshoot > 0.0 { foot.overshoot } else { ends });
             assert!(region >= 0.0 || inside(&solid, p), "curve {index}: {p:?} {foot:?}");
             assert!(region >= 0.3 || inside(&wider, p), "curve {index}, grown: {p:?} {foot:?}");

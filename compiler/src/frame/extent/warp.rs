@@ -114,5 +114,5 @@ fn is_empty(b: Box3) -> bool {
 
 /// One cell, of a distance proper.
 fn one(bounds: Box3) -> Solid {
-    Solid { bounds, cells: vec![grown(bounds, 0.0)], steepness: 1.0 }
+    Solid { bounds, cells: vec![grown(bounds, 0.0)], steepness: 1.0, loose: false }
 }

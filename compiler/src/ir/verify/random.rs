@@ -128,8 +128,8 @@ impl<'a> Writer<'a> {
         }
         let row = &ops::TABLE[self.random.below(ops::TABLE.len())];
         let data = match row.op {
-            Op::Closest if self.shape.curves == 0 => return,
-            Op::Closest => self.random.below(self.shape.curves as usize) as u32,
+            op if op.reads_curve() && self.shape.curves == 0 => return,
+            op if op.reads_curve() => self.random.below(self.shape.curves as usize) as u32,
             _ if row.has_data => [0, 1, 7, u32::MAX][self.random.below(4)],
             _ => 0,
         };

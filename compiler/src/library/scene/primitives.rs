@@ -4,10 +4,8 @@ use super::whole;
 use crate::library::{Builtin, call, math, optional, required};
 use crate::lower::shape::primitives::Primitive;
 use crate::lower::shape::{Kind, Shape};
-use crate::lower::tube;
 use crate::lower::value::Value;
 use crate::lower::{Lowered, Lowerer};
-use vol_language::library::{DefaultValue, Parameter};
 use vol_language::source::Span;
 use vol_language::ty::Type;
 
@@ -89,31 +87,11 @@ pub(super) fn builtins() -> Vec<Builtin> {
                 )
             },
         ),
-        tube_builtin(),
         implicit_builtin(),
     ]
     .into_iter()
     .chain(pointed())
     .collect()
-}
-
-fn tube_builtin() -> Builtin {
-    let along = |result| Type::function(vec![Type::Float, Type::Float], result);
-    let stretch =
-        Parameter { name: "stretch", ty: Type::Bool, default: DefaultValue::Bool(false), rest: false };
-    let params = vec![
-        required("curve", Type::Curve),
-        required("radius", along(Type::Float)),
-        optional("twist", along(Type::Angle), 0.0),
-        stretch,
-    ];
-    let doc = "tube around a curve with flat ends; radius and twist are numbers or functions of t (0 to 1) or (t, l); \
-               local coordinates are (x / radius, l, y / radius), with stretch l / length in the middle";
-    call("tube", params, Type::Shape, doc, |lowerer, span, a| {
-        let stretch = lowerer.compile_time(a[3].scalar(), "`stretch`", lowerer.argument_span(3, span))? != 0.0;
-        let (radius, twist) = (a[1].function(), a[2].function());
-        Shape::value(tube::tube(lowerer, &a[0].curve(), radius, twist, stretch, span)?, lowerer, span)
-    })
 }
 
 /// Shapes with slanted faces, and flat ones.

@@ -38,6 +38,21 @@ pub(crate) enum Transform {
 }
 
 impl Transform {
+    /// How volumes of the child change; 1 for transforms that move and turn.
+    pub(super) fn volume(&self, graph: &mut Graph) -> ValueId {
+        let factors = match self {
+            Self::Scale { factor } => [*factor; 3],
+            Self::Stretch { factors, .. } => *factors,
+            Self::Translate { .. }
+            | Self::Rotate { .. }
+            | Self::Mirror { .. }
+            | Self::Elongate { .. }
+            | Self::Twist { .. } => return graph.number(1.0),
+        };
+        let area = graph.mul(factors[0], factors[1]);
+        graph.mul(area, factors[2])
+    }
+
     /// A point in the coordinates of the child.
     pub(super) fn to_child(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
         match self {

@@ -40,6 +40,7 @@ fn program(objects: usize, media: usize) -> Program {
         params: Vec::new(),
         measures: Vec::new(),
         curves: Vec::new(),
+        tubes: Vec::new(),
         objects: vec![object; objects],
         media: vec![medium; media],
         lights: Vec::new(),

@@ -120,3 +120,24 @@ pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usiz
     }
     MAX_RESULTS
 }
+
+/// [`curve::closest_gradient`] in each lane: asked for at hits only, so it may be slower.
+pub(super) fn closest_gradient(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usize {
+    let n = x[0].len().min(LANES);
+    let mut searches = Searches::new(x);
+    for (index, piece) in (0u32..).zip(pieces) {
+        searches.visit(n, *piece, index);
+    }
+    for lane in 0..n {
+        let found = match pieces.get(searches.piece[lane] as usize) {
+            Some(piece) => curve::slopes(searches.point(lane), piece, searches.t[lane]),
+            None => curve::closest_gradient(searches.point(lane), &[]),
+        };
+        let ([dx, dy, dz], [tx, ty, tz]) = (found.direction, found.tangent);
+        let values = [dx, dy, dz, tx, ty, tz, found.rate, found.slide];
+        for (out, value) in out.iter_mut().zip(values) {
+            out.0[lane] = value;
+        }
+    }
+    MAX_RESULTS
+}

@@ -194,6 +194,62 @@ fn every_size_agrees_with_f64() {
 }
 
 #[test]
+fn slopes_agree_with_f64() {
+    let mut counted = 0;
+    for (category, name) in CATEGORIES.iter().enumerate() {
+        let mut dice = Dice(17 + category as u64);
+        let mut worst = (0f64, 0f64, 0f64);
+        for _ in 0..1000 {
+            let (segment, p) = case(&mut dice, category);
+            let found = closest_gradient(p, &prepare(&[segment]).pieces);
+            let all = [found.direction, found.tangent].concat();
+            assert!(
+                all.iter().chain([&found.rate, &found.slide]).all(|x| x.is_finite()),
+                "{segment:?} {found:?}"
+            );
+            let (wide, segments) = (p.map(f64::from), [segment]);
+            let (Some(at), Some(truth)) =
+                (reference::closest(wide, &segments), reference::slopes(wide, &segments))
+            else {
+                unreachable!("not empty")
+            };
+            let span = norm(along(segment.b, -1.0, segment.a)) + norm(along(segment.c, -1.0, segment.b));
+            let scale = span.max(at.distance);
+            // Away from jumps, cusps and the places where a held foot lets go.
+            let lean = dot64(truth.direction, truth.tangent).abs();
+            let clear = at.gap > 1e-3 * scale && at.stretch > 0.05 && !(1e-5..0.1).contains(&lean);
+            let steady = truth.rate * span < 10.0 && at.distance > 1e-3 * scale;
+            if !(clear && steady) {
+                continue;
+            }
+            counted += 1;
+            let off = |a: [f32; 3], b: [f64; 3]| norm(along(a.map(f64::from), -1.0, b));
+            let per_distance = scale / at.distance;
+            worst.0 = worst.0.max(off(found.direction, truth.direction) / per_distance);
+            worst.1 = worst.1.max(off(found.tangent, truth.tangent));
+            let slide = (f64::from(found.slide) - truth.slide).abs() / (1.0 + truth.slide * truth.slide);
+            worst.2 = worst.2.max(slide / per_distance.max(scale / span));
+            let rate = (f64::from(found.rate) - truth.rate).abs();
+            assert!(rate <= 1e-4 * truth.rate, "{name} {segment:?} {p:?}: {found:?} {truth:?}");
+        }
+        assert!(worst.0 < 4e-6 && worst.1 < 1e-4 && worst.2 < 1e-4, "{name}: {worst:?}");
+    }
+    assert!(counted > 3000, "{counted}");
+}
+
+#[test]
+fn slopes_of_nothing_and_points() {
+    let at = |q: [f64; 3]| Quadratic { a: q, b: q, c: q };
+    let point = closest_gradient([1.0, 2.0, 2.0], &prepare(&[at([1.0, 0.0, 2.0])]).pieces);
+    assert_eq!((point.direction, point.rate, point.slide), ([0.0, 1.0, 0.0], 0.0, 0.0));
+    assert_eq!(closest_gradient([0.0; 3], &[]), STILL);
+    let line = prepare(&[Quadratic { a: [0.0; 3], b: [1.0, 0.0, 0.0], c: [2.0, 0.0, 0.0] }]).pieces;
+    let on = closest_gradient([1.0, 0.0, 0.0], &line);
+    assert_eq!((on.direction, on.tangent, on.rate, on.slide), ([0.0; 3], [1.0, 0.0, 0.0], 0.5, 1.0));
+    assert_eq!(closest_gradient([3.0, 1.0, 0.0], &line).slide, 0.0);
+}
+
+#[test]
 fn arc_length_at_a_foot() {
     // At given parameters, so that the foot cannot slide: the length alone.
     let mut dice = Dice(5);

@@ -155,6 +155,7 @@ impl World {
             module: Module::default(),
             params: Vec::new(),
             curves: Vec::new(),
+            tubes: Vec::new(),
             objects: Vec::new(),
             media: Vec::new(),
             lights: Vec::new(),

@@ -29,9 +29,9 @@ fn curves_in_a_body_have_no_derivative() {
     let mut graph = Graph::default();
     let x = graph.input(0);
     let state = graph.placeholder();
-    let distance = graph.apply_all(Op::Closest, 0, &[state, x, x])[5];
+    let stretch = graph.apply_all(Op::Closest, 0, &[state, x, x])[7];
     let goes_on = graph.boolean(true);
-    let repeated = Repeated { state: &[state], first: &[x], next: &[distance], goes_on };
+    let repeated = Repeated { state: &[state], first: &[x], next: &[stretch], goes_on };
     let last = graph.repeat(2, repeated)[0];
     assert_eq!(gradient(&mut graph, last, &[0]), None);
 }

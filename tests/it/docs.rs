@@ -3,8 +3,9 @@
 //! A page holds `<!-- table: NAME -->` and `<!-- end -->`; what stands between them is compared with
 //! what the program says, and written anew with `VOL_UPDATE_DOCS=1 cargo test --test it -- docs`.
 
+use crate::support::ensure_page;
 use libtest_mimic::{Failed, Trial};
-use std::path::PathBuf;
+use std::path::Path;
 use vol_compiler::library::library;
 use vol_language::blocks::{BLOCK_KINDS, Key};
 use vol_language::hir::LocalField;
@@ -23,30 +24,16 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-fn page() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(LANGUAGE)
+fn page() -> Result<String, Failed> {
+    Ok(std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(LANGUAGE))?)
 }
 
 fn tables_are_current() -> Result<(), Failed> {
-    let text = std::fs::read_to_string(page())?;
-    let current = with_tables(&text)?;
-    if std::env::var_os("VOL_UPDATE_DOCS").is_some() {
-        std::fs::write(page(), &current)?;
-        return Ok(());
-    }
-    let differs = text.lines().zip(current.lines()).position(|(old, new)| old != new);
-    match differs {
-        None if text == current => Ok(()),
-        at => Err(format!(
-            "{LANGUAGE} differs from the program at line {}: run VOL_UPDATE_DOCS=1 cargo test --test it -- docs",
-            at.map_or(0, |at| at + 1)
-        )
-        .into()),
-    }
+    ensure_page(LANGUAGE, &with_tables(&page()?)?)
 }
 
 fn every_function_is_in_a_table() -> Result<(), Failed> {
-    let text = std::fs::read_to_string(page())?;
+    let text = page()?;
     let all = standard::extended(&library());
     let missing: Vec<&str> = all
         .signatures

@@ -120,6 +120,7 @@ pub(crate) fn program_of(function: Function) -> Result<Program, Failed> {
     let mut program = compile("function.vol", tubes)?;
     program.module = Module { frame: program.module.frame, functions: vec![function] };
     program.media.clear();
+    program.tubes.clear();
     program.fields.clear();
     Ok(program)
 }

@@ -81,7 +81,7 @@ fn splines() -> Vec<Builtin> {
             Type::Curve,
             "smooth curve through the points (centripetal), t even from point to point; within 6e-4 of a segment's length",
             |lowerer, span, a| {
-                let closed = is_set(lowerer, &a[1], "`closed`", span)?;
+                let closed = is_set(lowerer, a, 1, "`closed`", span)?;
                 Ok(value(curve::catmull_rom(lowerer, &points(&a[0]), closed, span)?))
             },
         ),
@@ -91,7 +91,7 @@ fn splines() -> Vec<Builtin> {
             Type::Curve,
             "smooth curve drawn towards the points (uniform, quadratic), from the first to the last unless closed; exact",
             |lowerer, span, a| {
-                let closed = is_set(lowerer, &a[1], "`closed`", span)?;
+                let closed = is_set(lowerer, a, 1, "`closed`", span)?;
                 Ok(value(curve::b_spline(lowerer, &points(&a[0]), closed, span)?))
             },
         ),
@@ -125,8 +125,9 @@ fn points(list: &Value) -> Vec<Point> {
     list.list().iter().map(Value::vec3).collect()
 }
 
-fn is_set(lowerer: &Lowerer<'_>, value: &Value, what: &str, span: Span) -> Lowered<bool> {
-    Ok(lowerer.compile_time(value.scalar(), what, span)? != 0.0)
+/// Whether an argument, known at compile time, is true.
+fn is_set(lowerer: &Lowerer<'_>, args: &[Value], index: usize, what: &str, span: Span) -> Lowered<bool> {
+    Ok(lowerer.compile_time(args[index].scalar(), what, lowerer.argument_span(index, span))? != 0.0)
 }
 
 fn tube() -> Builtin {
@@ -153,10 +154,10 @@ fn tube() -> Builtin {
         let outline = Outline {
             radius: a[1].function(),
             twist: a[2].function(),
-            stretch: is_set(lowerer, &a[3], "`stretch`", span)?,
+            stretch: is_set(lowerer, a, 3, "`stretch`", span)?,
             caps,
             frenet: &*word(&a[5]) == "frenet",
-            conserve_mass: is_set(lowerer, &a[6], "`conserve_mass`", span)?,
+            conserve_mass: is_set(lowerer, a, 6, "`conserve_mass`", span)?,
         };
         Shape::value(tube::tube(lowerer, a[0].curve(), outline, span)?, lowerer, span)
     })

@@ -21,6 +21,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     vec![
         Trial::test("docs::tables_are_current", tables_are_current),
         Trial::test("docs::every_function_is_in_a_table", every_function_is_in_a_table),
+        Trial::test("docs::coverage_names_tests_that_exist", coverage_names_tests_that_exist),
     ]
 }
 
@@ -42,6 +43,41 @@ fn every_function_is_in_a_table() -> Result<(), Failed> {
         .map(|signature| signature.name)
         .collect();
     if missing.is_empty() { Ok(()) } else { Err(format!("not in a table: {}", missing.join(", ")).into()) }
+}
+
+/// Every name in the last column is a scene of `tests/ui`, or stands in a source file or its path.
+fn coverage_names_tests_that_exist() -> Result<(), Failed> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join("docs/coverage.md"))?;
+    let mut sources = String::new();
+    for folder in ["tests/it", "language/src", "compiler/src", "runtime-cpu/src"] {
+        read_all(&root.join(folder), &mut sources)?;
+    }
+    let mut missing = Vec::new();
+    for row in text.lines().filter(|line| line.starts_with("| ")) {
+        let tests = row.trim_end_matches(" |").rsplit(" | ").next().unwrap_or_default();
+        for name in tests.split('`').skip(1).step_by(2) {
+            let last = name.rsplit("::").next().unwrap_or(name);
+            if !root.join(format!("tests/ui/{name}.vol")).exists() && !sources.contains(last) {
+                missing.push(name.to_owned());
+            }
+        }
+    }
+    if missing.is_empty() { Ok(()) } else { Err(format!("no such test: {}", missing.join(", ")).into()) }
+}
+
+/// Paths and texts of all files below a folder.
+fn read_all(folder: &Path, out: &mut String) -> Result<(), Failed> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        *out += &path.display().to_string();
+        out.push('\n');
+        match path.is_dir() {
+            true => read_all(&path, out)?,
+            false => *out += &std::fs::read_to_string(&path).unwrap_or_default(),
+        }
+    }
+    Ok(())
 }
 
 /// The page with all its tables written anew.

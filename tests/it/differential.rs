@@ -183,7 +183,8 @@ fn random_functions(evaluate: &Evaluate) -> Result<(), Failed> {
     ensure(decided * 4 > all, || format!("only {decided} of {all} points are decided"))
 }
 
-type EvaluateField =
+/// Values of a field at points.
+pub(crate) type EvaluateField =
     dyn Fn(&Program, &Frame, vol_compiler::ir::FunctionId, &[[f32; 3]]) -> Result<Vec<f32>, Failed>;
 
 /// Every field of a scene at points scattered over its bounds, at two moments.
@@ -192,15 +193,27 @@ fn check_fields(path: &Path, evaluate: &EvaluateField) -> Result<(), Failed> {
     ensure(!program.fields.is_empty(), || "the scene has no fields".into())?;
     for time in [0.0, 1.7] {
         let frame = frame(&program, time, [8, 8])?;
-        let points = compare::scatter(&frame.bounds, POINTS as u32);
-        for field in &program.fields {
-            let function = program.module.function(field.function);
-            let expected = compare::expected(function, &frame, &points);
-            let actual = evaluate(&program, &frame, field.function, &points)?;
-            let report = compare::field(&actual, &expected, function.outputs.len());
-            ensure(report.passes(), || format!("{} at {time} s: {report:?}", field.name))?;
-            ensure(report.undecided < report.points, || format!("{}: nothing decided", field.name))?;
+        for (name, report) in compare_fields(&program, &frame, POINTS, evaluate)? {
+            ensure(report.passes(), || format!("{name} at {time} s: {report:?}"))?;
+            ensure(report.undecided < report.points, || format!("{name}: nothing decided"))?;
         }
     }
     Ok(())
+}
+
+/// Every field of a program at points scattered over the bounds of a frame, against the reference.
+pub(crate) fn compare_fields(
+    program: &Program,
+    frame: &Frame,
+    count: usize,
+    evaluate: &EvaluateField,
+) -> Result<Vec<(String, FieldReport)>, Failed> {
+    let points = compare::scatter(&frame.bounds, count as u32);
+    let compared = program.fields.iter().map(|field| {
+        let function = program.module.function(field.function);
+        let expected = compare::expected(function, frame, &points);
+        let actual = evaluate(program, frame, field.function, &points)?;
+        Ok((field.name.clone(), compare::field(&actual, &expected, function.outputs.len())))
+    });
+    compared.collect()
 }

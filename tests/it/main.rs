@@ -11,6 +11,7 @@ mod docs;
 mod examples;
 mod explain;
 mod fixes;
+mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod noises;
@@ -34,6 +35,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(examples::trials());
     trials.extend(explain::trials());
     trials.extend(fixes::trials());
+    trials.extend(generated::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

@@ -13,9 +13,6 @@ const WITHOUT_SCENES: [&str; 2] = ["E0221", "E0301"];
 /// Codes whose first scene is many files; the tests of `language/src/module.rs` have them.
 const OF_MANY_FILES: [&str; 1] = ["E0604"];
 
-/// Codes whose second scene has a loop, which is checked but not compiled yet.
-const WAIT_FOR_LOOPS: [&str; 2] = ["E0234", "E0235"];
-
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     let scenes = |(code, _): (&'static str, _)| {
@@ -86,13 +83,8 @@ fn has_mistake(story: &Story) -> Result<(), Failed> {
 }
 
 fn has_none(story: &Story) -> Result<(), Failed> {
-    let code = story.code;
     let after = story.after().ok_or("there is no scene after")?;
     let Diagnosed { program, diagnostics: found, .. } = diagnose(SourceFile::new("after.vol", after));
-    if WAIT_FOR_LOOPS.contains(&code) {
-        let is_loop = found.iter().all(|found| found.message == "loops cannot be compiled yet");
-        return ensure(is_loop && !found.is_empty(), || format!("the scene after gives {found:#?}"));
-    }
     ensure(program.is_some() && found.is_empty(), || format!("the scene after gives {found:#?}"))
 }
 

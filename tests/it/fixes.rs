@@ -8,8 +8,7 @@ use vol_language::diag::{Diagnostic, Fix};
 use vol_language::source::{SourceFile, Sources};
 
 /// Scenes of which a repair uncovers another error, with the reason.
-const UNCOVERS: [(&str, &str); 3] = [
-    ("loops_without_from", "loops are checked, but not compiled yet"),
+const UNCOVERS: [(&str, &str); 2] = [
     ("syntax_escape", "the text that can be read now is none that `lighting` takes"),
     ("syntax_missing_comma_in_vector", "two commas are missing, and the grammar stops at the first"),
 ];

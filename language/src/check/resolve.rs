@@ -34,6 +34,8 @@ impl<'a> Checker<'a> {
             "frame" => self.push(hir::ExprKind::Frame, Type::Int, span),
             "pi" => self.push(hir::ExprKind::Number(PI), Type::Float, span),
             "tau" => self.push(hir::ExprKind::Number(TAU), Type::Float, span),
+            // `phase: rayleigh` is as good as `rayleigh()`.
+            _ if self.needs_no_argument(name) => self.call_library(name, span, Vec::new(), span),
             _ if self.builtins.contains_key(name) || construct::is_constructor(name) => {
                 self.uncalled(name, span)
             }
@@ -108,6 +110,12 @@ impl<'a> Checker<'a> {
             Kind::Let { id: None, .. } => self.wrong(span),
             Kind::Function { .. } => self.uncalled(name, span),
         }
+    }
+
+    /// Whether a function of the library takes no argument at all.
+    fn needs_no_argument(&self, name: &str) -> bool {
+        let forms = self.builtins.get(name).map_or(&[][..], |forms| forms);
+        forms.iter().any(|&id| self.library.signature(id).params.is_empty())
     }
 
     fn uncalled(&mut self, name: &str, span: Span) -> ExprId {

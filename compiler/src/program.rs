@@ -301,6 +301,15 @@ pub enum Extent {
         /// The call, for messages.
         span: Span,
     },
+    /// The x axis bent to a circle about (0, 1 / rate).
+    Bent {
+        /// The shape before.
+        child: Box<Extent>,
+        /// Radians per unit of length.
+        rate: Slot,
+        /// The call, for messages.
+        span: Span,
+    },
     /// Copies along the axes, centred at the origin.
     Repeated {
         /// One copy.

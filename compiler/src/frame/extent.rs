@@ -139,6 +139,7 @@ impl Space<'_> {
             Extent::Twisted { child, rate, span } => {
                 warp::twisted(self.solid(child)?, self.at(*rate), *span)?
             }
+            Extent::Bent { child, rate, span } => warp::bent(self.solid(child)?, self.at(*rate), *span)?,
             Extent::Repeated { child, axes, overlap, span } => {
                 let rows = axes.map(|run| run.map(|run| (self.at(run.period), run.count)));
                 warp::repeated(self.solid(child)?, rows, *overlap, *span)?

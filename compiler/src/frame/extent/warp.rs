@@ -1,7 +1,7 @@
-//! Twisted and repeated solids.
+//! Twisted, bent and repeated solids.
 
 use super::{Box3, EMPTY, Solid, grown};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use vol_language::diag::Diagnostic;
 use vol_language::source::Span;
 
@@ -32,6 +32,47 @@ pub(super) fn twisted(child: Solid, rate: f64, span: Span) -> Result<Solid, Diag
     }
     let steepness = child.steepness * 0.5 * (turn + turn.hypot(2.0));
     Ok(Solid { steepness, ..one(turned(child.bounds)) })
+}
+
+/// The x axis bent to a circle about (0, 1 / rate). The map back stretches along the circle by
+/// 1 / (1 - rate y), which is at most `2 / (1 - |rate| h)` half way from the largest |y| of the child,
+/// h, to the centre; further in the distance is held.
+pub(super) fn bent(child: Solid, rate: f64, span: Span) -> Result<Solid, Diagnostic> {
+    let b = child.bounds;
+    if is_empty(b) {
+        return Ok(child);
+    }
+    // Enlarged, so that what is left of the room outlasts rounding to f32.
+    let reach = |i: usize| b.lo[i].abs().max(b.hi[i].abs()) * (1.0 + 10.0 * SLACK);
+    let (turn, rise) = (rate.abs() * reach(0), rate.abs() * reach(1));
+    let fits = turn < PI && rise < 1.0 && reach(0).is_finite() && reach(1).is_finite();
+    if !fits {
+        let message = "this shape is too large across or along the x axis to be bent so much";
+        let label = "it would reach the centre of the bend or meet its own other end";
+        let help = "bend less, as in `.bend(10deg)`, or make the shape smaller in y or shorter in x";
+        return Err(Diagnostic::error("E0501", message, span, label).with_help(help));
+    }
+    let steepness = child.steepness * 2.0 / (1.0 - rise);
+    if rate == 0.0 {
+        return Ok(Solid { steepness, ..one(b) });
+    }
+    let mut bounds = EMPTY;
+    (bounds.lo[2], bounds.hi[2]) = (b.lo[2], b.hi[2]);
+    let (from, to) = (rate.abs() * b.lo[0], rate.abs() * b.hi[0]);
+    // Both coordinates are linear in y; along the circle they turn at these angles.
+    let turns = [-FRAC_PI_2, 0.0, FRAC_PI_2].into_iter().filter(|&angle| from < angle && angle < to);
+    for angle in turns.chain([from, to]) {
+        for y in [b.lo[1], b.hi[1]] {
+            let half = (0.5 * angle).sin();
+            let run = (1.0 - rate * y) * angle.sin() / rate.abs();
+            let point = [run, y * angle.cos() + 2.0 * half * half / rate];
+            for i in 0..2 {
+                bounds.lo[i] = bounds.lo[i].min(point[i]);
+                bounds.hi[i] = bounds.hi[i].max(point[i]);
+            }
+        }
+    }
+    Ok(Solid { steepness, ..one(grown(bounds, SLACK * (reach(0) + reach(1)))) })
 }
 
 /// Copies along the axes: period and count of each, 0 without end.
@@ -93,7 +134,7 @@ fn widest_angle(b: Box3) -> f64 {
     }
     let holds_axis = b.lo[0] <= 0.0 && b.lo[2] <= 0.0 && b.hi[2] >= 0.0;
     if holds_axis {
-        return std::f64::consts::PI;
+        return PI;
     }
     let corners = [(b.lo[0], b.lo[2]), (b.lo[0], b.hi[2]), (b.hi[0], b.lo[2]), (b.hi[0], b.hi[2])];
     corners.into_iter().map(|(x, z)| z.atan2(x).abs()).fold(0.0, f64::max)

@@ -117,6 +117,16 @@ fn scales() -> Vec<Builtin> {
                 transformed(lowerer, span, a, transform)
             },
         ),
+        call(
+            "bend",
+            vec![child(), required("rate", Type::Angle)],
+            Type::Shape,
+            "the x axis bent towards y, about z, by an angle per unit of x, lengths along the axis kept; a lower bound, marched safely by the stretch at the shape's inner side",
+            |lowerer, span, a| {
+                let transform = transform::bend(lowerer, &a[0].shape(), a[1].scalar(), span)?;
+                transformed(lowerer, span, a, transform)
+            },
+        ),
     ]
 }
 

@@ -35,6 +35,81 @@ pub(crate) enum Transform {
     /// of the axis; further out it is asked at the nearest point within, or the distance to there is
     /// taken if that is larger.
     Twist { rate: ValueId, radius: ValueId },
+    /// The x axis bent in the plane of x and y, see [`Bend`].
+    Bend(Bend),
+}
+
+/// The x axis becomes a circle about (0, 1 / rate): towards +y for a positive rate. The map back
+/// stretches without bound at the centre and is cut opposite the origin, so the distance is held at a
+/// margin in which neither is reached, or is that of the box around the bent solid if that is larger.
+#[derive(Debug)]
+pub(crate) struct Bend {
+    /// Radians per length.
+    rate: ValueId,
+    /// Centre and half extents of the box of the child.
+    child: [[ValueId; 3]; 2],
+    /// Centre and half extents of the box of the bent child.
+    bent: [[ValueId; 3]; 2],
+}
+
+impl Bend {
+    /// |rate|, large enough to divide by: a smaller one bends by less than rounding.
+    fn safe_rate(&self, graph: &mut Graph) -> ValueId {
+        let least = graph.number(1e-9);
+        let size = graph.apply(Op::Abs, &[self.rate]);
+        graph.max(size, least)
+    }
+
+    /// Straightened. With s = |(rate x, 1 - rate y)| the height over the circle is (1 - s) / rate, here
+    /// without its cancellation at small rates.
+    fn to_child(&self, graph: &mut Graph, p: [ValueId; 3]) -> [ValueId; 3] {
+        let (one, two) = (graph.number(1.0), graph.number(2.0));
+        let size = self.safe_rate(graph);
+        let across = graph.mul(size, p[0]);
+        let drop = graph.mul(self.rate, p[1]);
+        let towards = graph.sub(one, drop);
+        let angle = graph.apply(Op::Atan2, &[across, towards]);
+        let x = graph.div(angle, size);
+        let s = graph.length(&[across, towards]);
+        let squared = graph.dot(&[p[0], p[1]], &[p[0], p[1]]);
+        let curved = graph.mul(self.rate, squared);
+        let twice = graph.mul(two, p[1]);
+        let above = graph.sub(twice, curved);
+        let below = graph.add(one, s);
+        [x, graph.div(above, below), p[2]]
+    }
+
+    /// How far off the child's box the map is still good: to the cut along x, half way to the centre.
+    fn margin(&self, graph: &mut Graph) -> ValueId {
+        let size = self.safe_rate(graph);
+        let [centre, half] = self.child;
+        let mut room = |axis: usize, angle: f64| {
+            let off = graph.apply(Op::Abs, &[centre[axis]]);
+            let reach = graph.add(off, half[axis]);
+            let angle = graph.number(angle);
+            let end = graph.div(angle, size);
+            graph.sub(end, reach)
+        };
+        let (along, inwards) = (room(0, std::f64::consts::PI), room(1, 1.0));
+        let part = graph.number(0.5);
+        let inwards = graph.mul(part, inwards);
+        graph.min(along, inwards)
+    }
+
+    fn distance(&self, lowerer: &mut Lowerer<'_>, child: &Shape, p: [ValueId; 3]) -> Lowered<ValueId> {
+        let inner = self.to_child(&mut lowerer.graph, p);
+        let distance = child.distance(lowerer, inner)?;
+        let graph = &mut lowerer.graph;
+        let mut off = |p: [ValueId; 3], [centre, half]: [[ValueId; 3]; 2]| {
+            let from_centre = [0, 1, 2].map(|i| graph.sub(p[i], centre[i]));
+            box_distance(graph, from_centre, half)
+        };
+        let (straight, around) = (off(inner, self.child), off(p, self.bent));
+        let margin = self.margin(graph);
+        let near = graph.max(distance, straight);
+        let held = graph.min(near, margin);
+        Ok(graph.max(held, around))
+    }
 }
 
 impl Transform {
@@ -47,7 +122,8 @@ impl Transform {
             | Self::Rotate { .. }
             | Self::Mirror { .. }
             | Self::Elongate { .. }
-            | Self::Twist { .. } => return graph.number(1.0),
+            | Self::Twist { .. }
+            | Self::Bend(_) => return graph.number(1.0),
         };
         let area = graph.mul(factors[0], factors[1]);
         graph.mul(area, factors[2])
@@ -81,6 +157,7 @@ impl Transform {
                 let (sine, cosine) = (graph.apply(Op::Sin, &[angle]), graph.apply(Op::Cos, &[angle]));
                 turned_back(graph, p, sine, cosine)
             }
+            Self::Bend(bend) => bend.to_child(graph, p),
         }
     }
 
@@ -125,6 +202,7 @@ impl Transform {
                 let distance = child.distance(lowerer, inner)?;
                 Ok(lowerer.graph.max(beyond, distance))
             }
+            Self::Bend(bend) => bend.distance(lowerer, child, p),
         }
     }
 
@@ -140,7 +218,11 @@ impl Transform {
             Self::Elongate { by } => {
                 lowerer.refuse(by, |x| x < 0.0, "a length to pull apart by must be at least 0", span)
             }
-            Self::Translate { .. } | Self::Rotate { .. } | Self::Mirror { .. } | Self::Twist { .. } => Ok(()),
+            Self::Translate { .. }
+            | Self::Rotate { .. }
+            | Self::Mirror { .. }
+            | Self::Twist { .. }
+            | Self::Bend(_) => Ok(()),
         }
     }
 
@@ -178,6 +260,10 @@ impl Transform {
                 let rate = lowerer.slot(*rate, "a twist", span)?;
                 Ok(Extent::Twisted { child: within, rate, span })
             }
+            Self::Bend(bend) => {
+                let rate = lowerer.slot(bend.rate, "a bend", span)?;
+                Ok(Extent::Bent { child: within, rate, span })
+            }
         }
     }
 }
@@ -194,6 +280,20 @@ pub(crate) fn twist(
     Ok(Transform::Twist { rate, radius })
 }
 
+/// A child bent by an angle per length.
+pub(crate) fn bend(
+    lowerer: &mut Lowerer<'_>,
+    child: &Rc<Shape>,
+    rate: ValueId,
+    span: Span,
+) -> Lowered<Transform> {
+    let extent = child.extent(lowerer, span)?;
+    let slot = lowerer.slot(rate, "a bend", span)?;
+    let bent = Extent::Bent { child: Box::new(extent.clone()), rate: slot, span };
+    let (child, bent) = (measured_box(lowerer, extent), measured_box(lowerer, bent));
+    Ok(Transform::Bend(Bend { rate, child, bent }))
+}
+
 /// A child scaled by a factor per axis.
 pub(crate) fn stretch(
     lowerer: &mut Lowerer<'_>,
@@ -204,11 +304,17 @@ pub(crate) fn stretch(
     let extent = Box::new(child.extent(lowerer, span)?);
     let zero = lowerer.graph.number(0.0);
     let extent = place(lowerer, extent, diagonal(factors, zero), [zero; 3], span)?;
+    let [centre, half] = measured_box(lowerer, extent);
+    Ok(Transform::Stretch { factors, centre, half })
+}
+
+/// Centre and half extents of the box of a solid.
+fn measured_box(lowerer: &mut Lowerer<'_>, extent: Extent) -> [[ValueId; 3]; 2] {
     let corners = lowerer.measure(Measure::Box(extent));
     let [x, y, z, half_x, half_y, half_z] = corners[..] else {
         unreachable!("a box is measured by six numbers")
     };
-    Ok(Transform::Stretch { factors, centre: [x, y, z], half: [half_x, half_y, half_z] })
+    [[x, y, z], [half_x, half_y, half_z]]
 }
 
 /// Turned about the y axis from x towards z, given sine and cosine of the angle.

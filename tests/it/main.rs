@@ -14,6 +14,7 @@ mod fixes;
 mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
+mod library;
 mod noises;
 mod physics;
 mod properties;
@@ -36,6 +37,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(explain::trials());
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
+    trials.extend(library::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

@@ -66,9 +66,9 @@ pub(super) fn bent(child: Solid, rate: f64, span: Span) -> Result<Solid, Diagnos
             let half = (0.5 * angle).sin();
             let run = (1.0 - rate * y) * angle.sin() / rate.abs();
             let point = [run, y * angle.cos() + 2.0 * half * half / rate];
-            for i in 0..2 {
-                bounds.lo[i] = bounds.lo[i].min(point[i]);
-                bounds.hi[i] = bounds.hi[i].max(point[i]);
+            for (i, x) in point.into_iter().enumerate() {
+                bounds.lo[i] = bounds.lo[i].min(x);
+                bounds.hi[i] = bounds.hi[i].max(x);
             }
         }
     }

@@ -6,7 +6,7 @@
 use super::curve::CurveValue;
 use super::shape::Kind;
 use super::value::Closure;
-use super::{Lowered, Lowerer};
+use super::{Lowered, Lowerer, depends_on_position};
 use crate::ir::ValueId;
 use crate::ir::graph::{Graph, Rate};
 use crate::ops::Op;
@@ -91,6 +91,12 @@ pub(crate) fn tube(
         let what = "a control point";
         let point = |lowerer: &mut Lowerer<'_>, p: &[ValueId; 3]| lowerer.slots(*p, what, span);
         segments.push([point(lowerer, a)?, point(lowerer, b)?, point(lowerer, c)?]);
+    }
+    // With arguments of frame rate only what the function brings from outside can vary with the point.
+    let still = lowerer.graph.frame_input(0);
+    let outside = lowerer.call_numbers(&outline.radius, &[still, still])?.scalar();
+    if lowerer.graph.rate(outside) == Rate::Point {
+        return Err(depends_on_position("the radius of a tube", lowerer.argument_span(1, span)));
     }
     let index = lowerer.curve(Curve { segments });
     let mut tube = Tube { index, curve, outline, varies: false, sizes: None };

@@ -8,15 +8,17 @@ check:
 test *args:
     scripts/test {{args}}
 
-# Render one scene: just render examples/01_sphere.vol -o out.png
+# Render one scene: just render examples/csg.vol -o out.png
 render scene *args:
     cargo run --release -- render {{scene}} {{args}}
 
-# Render every example into a folder
-gallery folder="target/gallery":
-    mkdir -p {{folder}}
-    cargo build --release
-    for scene in examples/*.vol; do echo "$scene"; cargo run -q --release -- render "$scene" -o "{{folder}}/$(basename "$scene" .vol).png" || exit 1; done
+# The pictures of the documentation
+gallery:
+    scripts/gallery
+
+# Look for inputs that break the compiler: just fuzz parse --seconds 600
+fuzz *args:
+    scripts/fuzz {{args}}
 
 # Benchmarks; arguments go to `cargo bench`
 bench *args:

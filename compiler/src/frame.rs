@@ -79,8 +79,18 @@ pub struct ObjectFrame {
     pub shows_normals: bool,
     /// No surface is outside.
     pub bounds: Aabb,
-    /// A distance times this never overshoots the surface: one over the steepness.
-    pub safe_scale: f32,
+    /// How far a distance can be walked.
+    pub stride: Stride,
+}
+
+/// What makes a distance safe to walk.
+#[derive(Clone, Copy, Debug)]
+pub enum Stride {
+    /// Times this it never overshoots the surface.
+    Scale(f32),
+    /// Nor divided by a bound on its slope in the box of the way: see
+    /// [`crate::program::Object::steepness`].
+    Within(FunctionId),
 }
 
 /// A medium in one frame.
@@ -229,7 +239,8 @@ impl Program {
             if !solid.steepness.is_finite() {
                 return Err(tube::unsafe_surface(object.span));
             }
-            objects.push(object_frame(index, object, solid));
+            let stride = object.steepness.map_or(Stride::Scale(1.0), |f| space.stride(f, solid.bounds));
+            objects.push(object_frame(index, object, &solid, stride));
         }
         let mut media = Vec::new();
         for (index, medium) in self.media.iter().enumerate().filter(|(_, medium)| on(medium.enabled)) {
@@ -318,7 +329,7 @@ fn control_points(curve: &crate::program::Curve, uniforms: &[f64]) -> Vec<Quadra
     segments.map(|&[a, b, c]| Quadratic { a: at3(a), b: at3(b), c: at3(c) }).collect()
 }
 
-fn object_frame(index: usize, object: &crate::program::Object, solid: Solid) -> ObjectFrame {
+fn object_frame(index: usize, object: &crate::program::Object, solid: &Solid, stride: Stride) -> ObjectFrame {
     ObjectFrame {
         index,
         distance: object.distance,
@@ -326,8 +337,7 @@ fn object_frame(index: usize, object: &crate::program::Object, solid: Solid) -> 
         surface: object.surface,
         shows_normals: object.shows_normals,
         bounds: extent::rounded(solid.bounds),
-        // Rounded down, so that the product never exceeds the safe step.
-        safe_scale: (1.0 / solid.steepness.max(1.0)) as f32 * (1.0 - f32::EPSILON),
+        stride,
     }
 }
 

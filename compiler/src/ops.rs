@@ -1,7 +1,7 @@
 //! The operation table: every operation of the IR, defined once.
 //!
 //! A row says what an operation is called, what it takes and gives, what it means (f64), how it
-//! acts on intervals, how it is differentiated, how far a conforming f32 evaluation may be from
+//! acts on intervals (on the host, and as further operations), how it is differentiated, how far a conforming f32 evaluation may be from
 //! its meaning, and how it is written in WGSL. The folder, the reference, the interval and error
 //! evaluators, the gradient pass, the WGSL writer, the verifier and the tests read this table;
 //! the CPU runtime has one kernel per row.
@@ -13,6 +13,7 @@ pub mod interval;
 mod logic;
 mod math;
 mod noise;
+pub(crate) mod range;
 mod slope;
 #[cfg(test)]
 mod tests;
@@ -179,6 +180,8 @@ pub struct Operation {
     pub error: ErrorRule,
     /// Derivative rule.
     pub derivative: DerivativeRule,
+    /// Range rule.
+    pub(crate) range: range::RangeRule,
     /// WGSL text with `{0}`, `{1}` … for operands, `{d}` for the data, `{first}` and `{count}` for
     /// the pieces of the curve.
     pub wgsl: &'static str,

@@ -9,10 +9,11 @@
 //! | [`cse`] | `sqrt %0` twice | once |
 //! | [`dce`] | values that no output needs | gone |
 //!
-//! [`gradient`] is no simplification but makes new values; lowering calls it.
+//! [`gradient`] and [`enclose`] are no simplifications but make new values; lowering calls them.
 
 pub mod cse;
 pub mod dce;
+pub(crate) mod enclose;
 pub mod fold;
 pub mod gradient;
 

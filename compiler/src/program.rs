@@ -133,6 +133,9 @@ pub struct Object {
     pub distance: FunctionId,
     /// Position to gradient of the distance: 3 inputs, 3 outputs, not normalised.
     pub gradient: FunctionId,
+    /// Box of positions (smallest corner, largest corner) to a bound, at least 1, on the length of the
+    /// gradient in it: 6 inputs, 1 output; without, that is 1 everywhere.
+    pub steepness: Option<FunctionId>,
     /// Position to surface response: 3 inputs, [`SURFACE_OUTPUTS`] outputs.
     pub surface: FunctionId,
     /// Colour by normal instead of by light.
@@ -371,6 +374,8 @@ pub enum Measure {
     Radius(Extent),
     /// Centre and half extents of the box: six numbers.
     Box(Extent),
+    /// Largest slope of the distance: one number.
+    Steepness(Extent),
 }
 
 impl Measure {
@@ -378,7 +383,7 @@ impl Measure {
     #[must_use]
     pub fn width(&self) -> u32 {
         match self {
-            Self::Radius(_) => 1,
+            Self::Radius(_) | Self::Steepness(_) => 1,
             Self::Box(_) => 6,
         }
     }

@@ -21,6 +21,7 @@ mod properties;
 mod shapes;
 mod spec;
 mod support;
+mod surfaces;
 mod ui;
 
 use libtest_mimic::{Arguments, Trial};
@@ -42,6 +43,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(physics::trials());
     trials.extend(properties::trials());
     trials.extend(shapes::trials());
+    trials.extend(surfaces::trials());
     trials.extend(spec::trials());
     trials.extend(ui::trials());
     #[cfg(feature = "gpu")]

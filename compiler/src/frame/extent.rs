@@ -2,8 +2,8 @@
 
 mod warp;
 
-use super::Aabb;
 use super::tube::Measured;
+use super::{Aabb, Stride};
 use crate::curve::{CurveTable, Quadratic};
 use crate::ir::{FunctionId, Module};
 use crate::ops::interval::Interval;
@@ -80,6 +80,13 @@ const FAR: f64 = 1e18;
 
 /// Parts per axis into which a box is cut when a function is bounded over it.
 const PARTS: usize = 4;
+
+/// A bound on the slope this many times that of the average part of a box is not used for all of it: asking
+/// at each step costs about as much as the step.
+const UNEVEN: f64 = 2.0;
+
+/// Nor one that is larger than this: it stands for a jump somewhere.
+const STEEPEST: f64 = 1e6;
 
 /// Parts of a curve for the bound on its radius.
 const CURVE_PARTS: usize = 32;
@@ -294,6 +301,25 @@ impl Space<'_> {
         steepest.is_finite().then_some(steepest)
     }
 
+    /// How a distance is made safe to walk: by one bound on its slope for all of its box if that is not
+    /// much larger than those for parts of it.
+    pub(super) fn stride(&self, steepness: FunctionId, bounds: Box3) -> Stride {
+        let (mut sum, mut most) = (0.0, 1.0_f64);
+        let cells = grid(bounds, PARTS);
+        for cell in &cells {
+            let corners = [cell.map(|x| x.lo), cell.map(|x| x.hi)].concat();
+            let corners: Vec<f64> = corners.into_iter().map(|x| x.clamp(-FAR, FAR)).collect();
+            let function = self.module.function(steepness);
+            let bound = reference::evaluate(function, &corners, self.uniforms, self.curves)[0].max(1.0);
+            (sum, most) = (sum + bound, most.max(bound));
+        }
+        if most > UNEVEN * (sum / cells.len() as f64) || most > STEEPEST {
+            return Stride::Within(steepness);
+        }
+        // Rounded down, so that the product never exceeds the safe step.
+        Stride::Scale((1.0 / most) as f32 * (1.0 - f32::EPSILON))
+    }
+
     /// The numbers of a measure; infinite ones as large finite ones.
     ///
     /// # Errors
@@ -301,6 +327,7 @@ impl Space<'_> {
     pub(super) fn measure(&self, measure: &Measure) -> Result<Vec<f64>, Diagnostic> {
         let numbers = match measure {
             Measure::Radius(extent) => vec![warp::radius(self.solid(extent)?.bounds)],
+            Measure::Steepness(extent) => vec![self.solid(extent)?.steepness],
             Measure::Box(extent) => {
                 let bounds = self.solid(extent)?.bounds;
                 let endless = |i: usize| !(bounds.lo[i].is_finite() && bounds.hi[i].is_finite());

@@ -222,6 +222,7 @@ fn object(
         name: name.clone(),
         distance: lowerer.function(&format!("distance:{name}"), 3, &[distance]),
         gradient: lowerer.function(&format!("gradient:{name}"), 3, &slope),
+        steepness: shape.steepness(lowerer, name, span)?,
         surface: lowerer.function(&format!("surface:{name}"), 3, &surface),
         shows_normals: matches!(*material, Material::Normals),
         extent: shape.extent(lowerer, span)?,

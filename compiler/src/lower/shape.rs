@@ -8,10 +8,12 @@
 //! | `blend` | how two surfaces meet |
 //! | `transform` | maps of space |
 //! | `copies` | repetition |
+//! | `steepness` | how fast the distance changes over a piece of a ray |
 
 pub(crate) mod blend;
 pub(crate) mod copies;
 pub(crate) mod primitives;
+mod steepness;
 pub(crate) mod transform;
 
 use super::tube::Tube;

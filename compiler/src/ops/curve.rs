@@ -8,7 +8,7 @@
 
 use super::error::{UNIT, decision, operand};
 use super::interval::Interval;
-use super::{Context, MAX_RESULTS, Op, Operation, Results, Ty, slope};
+use super::{Context, MAX_RESULTS, Op, Operation, Results, Ty, range, slope};
 use crate::curve::Quadratic;
 use crate::error_bound::Bounded;
 use crate::ir::ValueId;
@@ -43,6 +43,7 @@ pub(super) const CLOSEST: Operation = Operation {
     interval: |x, context| bounds([x[0], x[1], x[2]], segments(context)),
     error: |x, e, _, context| errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: along,
+    range: range::unknown,
     wgsl: "vol_closest(vec3f({0}, {1}, {2}), {first}, {count})",
     wgsl_extract: &[".t", ".arc_length", ".curve_length", ".x", ".y", ".distance", ".overshoot", ".stretch"],
     domain: &[(-4.0, 4.0); 3],
@@ -63,6 +64,7 @@ pub(super) const CLOSEST_GRADIENT: Operation = Operation {
     interval: |_, _| movement_bounds(),
     error: |x, e, _, context| movement_errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: none,
+    range: range::unknown,
     wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), {first}, {count})",
     wgsl_extract: &[
         ".direction.x",

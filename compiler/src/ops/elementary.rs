@@ -9,7 +9,7 @@
 use super::error::{SMALLEST, UNIT, monotone};
 use super::interval::Interval;
 use super::math::{NUMBER, NUMBERS, WHOLE};
-use super::{Op, Operation, one, one_within, slope};
+use super::{Op, Operation, one, one_within, range, slope};
 use std::f64::consts::{FRAC_PI_2, LN_2, PI, TAU};
 
 /// `exp2` is 0 below this.
@@ -40,6 +40,7 @@ pub(super) const SQRT: Operation = Operation {
         let slope = slope::over_positive(graph, 0.5, root);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::sqrt,
     wgsl: "sqrt(select(0.0, {0}, ({0} > 0.0)))",
     wgsl_extract: WHOLE,
     domain: &[(0.01, 100.0)],
@@ -58,6 +59,7 @@ pub(super) const SIN: Operation = Operation {
         let slope = graph.apply(Op::Cos, &[x[0]]);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::wave,
     wgsl: "vol_sin({0})",
     wgsl_extract: WHOLE,
     domain: &[(-20.0, 20.0)],
@@ -77,6 +79,7 @@ pub(super) const COS: Operation = Operation {
         let slope = slope::negative(graph, sine);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::wave,
     wgsl: "vol_cos({0})",
     wgsl_extract: WHOLE,
     domain: &[(-20.0, 20.0)],
@@ -99,6 +102,7 @@ pub(super) const EXP2: Operation = Operation {
         let slope = graph.mul(power, log);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::exp2,
     wgsl: "vol_exp2({0})",
     wgsl_extract: WHOLE,
     domain: &[(-20.0, 20.0)],
@@ -120,6 +124,7 @@ pub(super) const LOG2: Operation = Operation {
         let slope = slope::over_positive(graph, 1.0 / LN_2, x[0]);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::log2,
     wgsl: "vol_log2({0})",
     wgsl_extract: WHOLE,
     domain: &[(0.01, 100.0)],
@@ -143,6 +148,7 @@ pub(super) const ACOS: Operation = Operation {
         let slope = slope::over_positive(graph, -1.0, sine);
         Some(vec![slope::times(graph, slope, d[0])])
     },
+    range: range::acos,
     wgsl: "vol_acos({0})",
     wgsl_extract: WHOLE,
     domain: &[(-0.99, 0.99)],
@@ -165,6 +171,7 @@ pub(super) const ATAN2: Operation = Operation {
         let turn = slope::minus(graph, up, across);
         Some(vec![slope::times(graph, slope, turn)])
     },
+    range: range::atan2,
     wgsl: "vol_atan2({0}, {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (0.25, 8.0)],

@@ -7,7 +7,7 @@
 use super::error::decision;
 use super::interval::Interval;
 use super::math::{NUMBER, NUMBERS, WHOLE};
-use super::{Op, Operation, Results, Ty, one, one_within, slope};
+use super::{Op, Operation, Results, Ty, one, one_within, range, slope};
 use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 
@@ -24,6 +24,7 @@ pub(super) const LESS: Operation = Operation {
     interval: |x, _| known(x[0].hi < x[1].lo, x[0].lo >= x[1].hi),
     error: comparison_error,
     derivative: flat,
+    range: range::less,
     wgsl: "({0} < {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -39,6 +40,7 @@ pub(super) const LESS_EQUAL: Operation = Operation {
     interval: |x, _| known(x[0].hi <= x[1].lo, x[0].lo > x[1].hi),
     error: comparison_error,
     derivative: flat,
+    range: range::less_equal,
     wgsl: "({0} <= {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -57,6 +59,7 @@ pub(super) const EQUAL: Operation = Operation {
     },
     error: comparison_error,
     derivative: flat,
+    range: range::equal,
     wgsl: "({0} == {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -72,6 +75,7 @@ pub(super) const AND: Operation = Operation {
     interval: |x, _| one_within(Interval::new(x[0].lo.min(x[1].lo), x[0].hi.min(x[1].hi))),
     error: |x, e, _, _| one(joint_error(x, e, 0.0)),
     derivative: flat,
+    range: range::and,
     wgsl: "({0} & {1})",
     wgsl_extract: WHOLE,
     domain: &[(0.0, 1.0), (0.0, 1.0)],
@@ -87,6 +91,7 @@ pub(super) const OR: Operation = Operation {
     interval: |x, _| one_within(Interval::new(x[0].lo.max(x[1].lo), x[0].hi.max(x[1].hi))),
     error: |x, e, _, _| one(joint_error(x, e, 1.0)),
     derivative: flat,
+    range: range::or,
     wgsl: "({0} | {1})",
     wgsl_extract: WHOLE,
     domain: &[(0.0, 1.0), (0.0, 1.0)],
@@ -102,6 +107,7 @@ pub(super) const NOT: Operation = Operation {
     interval: |x, _| one_within(Interval::new(1.0 - x[0].hi, 1.0 - x[0].lo)),
     error: |_, e, _, _| one(e[0]),
     derivative: flat,
+    range: range::not,
     wgsl: "(!{0})",
     wgsl_extract: WHOLE,
     domain: &[(0.0, 1.0)],
@@ -127,6 +133,7 @@ pub(super) const SELECT: Operation = Operation {
         one(if e[0] == 0.0 { e[chosen] } else { e[chosen].max(swapped) })
     },
     derivative: |graph, _, x, _, d| Some(vec![slope::either(graph, x[0], d[1], d[2])]),
+    range: range::select,
     wgsl: "select({2}, {1}, {0})",
     wgsl_extract: WHOLE,
     domain: &[(0.0, 1.0), (-8.0, 8.0), (-8.0, 8.0)],

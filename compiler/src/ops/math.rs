@@ -5,7 +5,7 @@
 
 use super::error::{self, decision, operand};
 use super::interval::Interval;
-use super::{Op, Operation, Ty, one, one_within, slope};
+use super::{Op, Operation, Ty, one, one_within, range, slope};
 use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 
@@ -25,6 +25,7 @@ pub(super) const ADD: Operation = Operation {
     interval: |x, _| one_within(x[0] + x[1]),
     error: |x, e, _, _| one(error::add(operand(x, e, 0), operand(x, e, 1)).error),
     derivative: |graph, _, _, _, d| Some(vec![slope::plus(graph, d[0], d[1])]),
+    range: range::add,
     wgsl: "({0} + {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -40,6 +41,7 @@ pub(super) const SUB: Operation = Operation {
     interval: |x, _| one_within(x[0] - x[1]),
     error: |x, e, _, _| one(error::sub(operand(x, e, 0), operand(x, e, 1)).error),
     derivative: |graph, _, _, _, d| Some(vec![slope::minus(graph, d[0], d[1])]),
+    range: range::sub,
     wgsl: "({0} - {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -58,6 +60,7 @@ pub(super) const MUL: Operation = Operation {
         let (left, right) = (slope::times(graph, x[1], d[0]), slope::times(graph, x[0], d[1]));
         Some(vec![slope::plus(graph, left, right)])
     },
+    range: range::mul,
     wgsl: "({0} * {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -78,6 +81,7 @@ pub(super) const DIV: Operation = Operation {
         let rise = slope::minus(graph, d[0], by_divisor);
         Some(vec![if slope::is_zero(graph, rise) { rise } else { graph.div(rise, x[1]) }])
     },
+    range: range::div,
     wgsl: "({0} / {1})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (0.25, 8.0)],
@@ -93,6 +97,7 @@ pub(super) const MIN: Operation = Operation {
     interval: |x, _| one_within(Interval::new(x[0].lo.min(x[1].lo), x[0].hi.min(x[1].hi))),
     error: |x, e, _, _| one(extreme_error(x[1] - x[0], e)),
     derivative: |graph, _, x, _, d| Some(vec![extreme_derivative(graph, x[0], x[1], d[0], d[1])]),
+    range: range::min,
     wgsl: "select({1}, {0}, ({0} < {1}))",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -108,6 +113,7 @@ pub(super) const MAX: Operation = Operation {
     interval: |x, _| one_within(Interval::new(x[0].lo.max(x[1].lo), x[0].hi.max(x[1].hi))),
     error: |x, e, _, _| one(extreme_error(x[0] - x[1], e)),
     derivative: |graph, _, x, _, d| Some(vec![extreme_derivative(graph, x[1], x[0], d[0], d[1])]),
+    range: range::max,
     wgsl: "select({1}, {0}, ({0} > {1}))",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0), (-8.0, 8.0)],
@@ -123,6 +129,7 @@ pub(super) const NEG: Operation = Operation {
     interval: |x, _| one_within(-x[0]),
     error: |_, e, _, _| one(e[0]),
     derivative: |graph, _, _, _, d| Some(vec![slope::negative(graph, d[0])]),
+    range: range::neg,
     wgsl: "(-({0}))",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0)],
@@ -146,6 +153,7 @@ pub(super) const ABS: Operation = Operation {
         let mirrored = slope::negative(graph, d[0]);
         Some(vec![slope::either(graph, negative, mirrored, d[0])])
     },
+    range: range::abs,
     wgsl: "abs({0})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0)],
@@ -161,6 +169,7 @@ pub(super) const FLOOR: Operation = Operation {
     interval: |x, _| one_within(x[0].increasing_exact(f64::floor)),
     error: |x, e, _, _| one(decision((x[0] - e[0]).floor() == (x[0] + e[0]).floor())),
     derivative: |graph, _, _, _, _| Some(vec![graph.number(0.0)]),
+    range: range::floor,
     wgsl: "floor({0})",
     wgsl_extract: WHOLE,
     domain: &[(-8.0, 8.0)],

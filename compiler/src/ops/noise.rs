@@ -2,6 +2,7 @@
 //!
 //! | room | noises |
 //! |---|---|
+//! | [`ranges`] | ranges as values of a graph |
 //! | [`smooth`] | what all with continuous derivatives have in common: intervals and errors |
 //! | [`lattice`] | Perlin noise of four coordinates, value noise, simplex noise |
 //! | [`cells`] | distance to strewn points, random numbers of cells |
@@ -11,6 +12,7 @@
 
 mod cells;
 mod lattice;
+mod ranges;
 mod smooth;
 
 use super::error::{self, operand};
@@ -29,6 +31,7 @@ pub(super) use lattice::{PERLIN4, PERLIN4_GRADIENT, SIMPLEX, SIMPLEX_GRADIENT, V
 /// Improved Perlin noise. Own errors: 6.2e-7 and, of a partial derivative, 1.9e-6 were seen over 3e6
 /// points with every rounding drawn at random.
 const OCTAVE: Smooth = Smooth {
+    dimensions: 3,
     gradient: |p, seed| several(&noise::perlin_gradient([p[0], p[1], p[2]], seed)),
     largest: 1.036_353_811_3,
     steepest: 3.75,
@@ -64,6 +67,7 @@ pub(super) const PERLIN: Operation = Operation {
         let parts = graph.apply_all(Op::PerlinGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
     },
+    range: |graph, _, _| Some(vec![OCTAVE.ranges(graph)[0]]),
     wgsl: "vol_perlin(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 3],
@@ -79,6 +83,7 @@ pub(super) const PERLIN_GRADIENT: Operation = Operation {
     interval: |x, context| OCTAVE.bounds(x, context.data),
     error: |x, e, _, context| OCTAVE.errors(x, e, context.data),
     derivative: none,
+    range: |graph, _, _| Some(OCTAVE.ranges(graph)),
     wgsl: "vol_perlin_gradient(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: PARTS,
     domain: &[SPACE; 3],
@@ -101,6 +106,7 @@ pub(super) const FBM: Operation = Operation {
         let parts = graph.apply_all(Op::FbmGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], &d[..3])])
     },
+    range: |graph, _, x| Some(vec![ranges::octaves(graph, &OCTAVE, x)?[0]]),
     wgsl: "vol_fbm(vec3f({0}, {1}, {2}), {3}, {4}, {5}, {d}u)",
     wgsl_extract: WHOLE,
     domain: SUM_DOMAIN,
@@ -119,6 +125,7 @@ pub(super) const FBM_GRADIENT: Operation = Operation {
     interval: |x, context| several_within(&sum_bounds(x, context.data)),
     error: |x, e, _, context| sum_errors(x, e, context.data),
     derivative: none,
+    range: |graph, _, x| ranges::octaves(graph, &OCTAVE, x),
     wgsl: "vol_fbm_gradient(vec3f({0}, {1}, {2}), {3}, {4}, {5}, {d}u)",
     wgsl_extract: PARTS,
     domain: SUM_DOMAIN,

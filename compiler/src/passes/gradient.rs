@@ -82,7 +82,7 @@ fn differentiate(
 }
 
 /// What `values` need, varies with the position and is not known, operands first.
-fn varying(graph: &Graph, values: &[ValueId], known: &HashMap<ValueId, Slopes>) -> Vec<ValueId> {
+pub(super) fn varying<T>(graph: &Graph, values: &[ValueId], known: &HashMap<ValueId, T>) -> Vec<ValueId> {
     let mut found = HashSet::new();
     let mut pending = values.to_vec();
     while let Some(node) = pending.pop() {

@@ -20,7 +20,7 @@
 //! | 17 | `AT_UP` | to the upper edge at distance 1, xyz |
 //! | 20 | `AT_BACKGROUND` | rgb |
 //! | 23 | `AT_LIGHT_COUNT` | number of lights |
-//! | 24 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale |
+//! | 24 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
 //! | 24 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 8 words per light of the frame: distant, position or direction xyz, color rgb, shadows |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
@@ -29,7 +29,7 @@
 //! might flush.
 
 use super::WgslError;
-use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel};
+use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel, Stride};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
 use std::fmt::Write;
@@ -141,8 +141,8 @@ struct Pick<'a> {
     otherwise: &'a str,
     /// Arguments passed on.
     arguments: &'a str,
-    /// One function per index.
-    functions: Vec<FunctionId>,
+    /// One function per index; where there is none the result is that for an index out of range.
+    functions: Vec<Option<FunctionId>>,
     /// What becomes of the result `v` of a function.
     result: &'a str,
     /// Private variables that count the calls.
@@ -157,6 +157,7 @@ impl Pick<'_> {
         }
         text += "    switch index {\n";
         for (index, function) in self.functions.iter().enumerate() {
+            let Some(function) = function else { continue };
             let call = format!("let v = vol_f{}({});", function.0, self.arguments);
             let _ = writeln!(
                 text,
@@ -173,10 +174,11 @@ impl Pick<'_> {
     }
 }
 
-fn picks(program: &Program) -> [Pick<'static>; 7] {
+fn picks(program: &Program) -> [Pick<'static>; 8] {
     let of_objects =
-        |pick: fn(&crate::program::Object) -> FunctionId| program.objects.iter().map(pick).collect();
-    let of_media = |pick: fn(&crate::program::Medium) -> FunctionId| program.media.iter().map(pick).collect();
+        |pick: fn(&crate::program::Object) -> Option<FunctionId>| program.objects.iter().map(pick).collect();
+    let of_media =
+        |pick: fn(&crate::program::Medium) -> FunctionId| program.media.iter().map(pick).map(Some).collect();
     let point = |signature, otherwise, functions, result, counters| Pick {
         signature,
         otherwise,
@@ -188,18 +190,32 @@ fn picks(program: &Program) -> [Pick<'static>; 7] {
     const SEARCH: &[&str] = &["counted_evaluations"];
     const SAMPLE: &[&str] = &["counted_evaluations", "counted_samples"];
     [
-        point("object_distance(index: u32, p: vec3f) -> f32", "FAR", of_objects(|o| o.distance), "v", SEARCH),
         point(
-            "object_gradient(index: u32, p: vec3f) -> vec3f",
-            "vec3f(0.0)",
-            of_objects(|o| o.gradient),
+            "object_distance(index: u32, p: vec3f) -> f32",
+            "FAR",
+            of_objects(|o| Some(o.distance)),
             "v",
             SEARCH,
         ),
         point(
+            "object_gradient(index: u32, p: vec3f) -> vec3f",
+            "vec3f(0.0)",
+            of_objects(|o| Some(o.gradient)),
+            "v",
+            SEARCH,
+        ),
+        Pick {
+            signature: "object_steepness(index: u32, lo: vec3f, hi: vec3f) -> f32",
+            otherwise: "1.0",
+            arguments: "lo.x, lo.y, lo.z, hi.x, hi.y, hi.z",
+            functions: of_objects(|o| o.steepness),
+            result: "v",
+            counters: SEARCH,
+        },
+        point(
             "object_surface(index: u32, p: vec3f) -> Response",
             "Response(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0)",
-            of_objects(|o| o.surface),
+            of_objects(|o| Some(o.surface)),
             "Response(vec3f(v.v0, v.v1, v.v2), vec3f(v.v3, v.v4, v.v5), vec3f(v.v6, v.v7, v.v8), v.v9)",
             &[],
         ),
@@ -278,7 +294,11 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4]) 
     let mut objects = vec![[0.0; RECORD_WORDS]; program.objects.len()];
     for object in &frame.objects {
         let state = if object.shows_normals { 2.0 } else { 1.0 };
-        objects[object.index] = record(state, padded(&object.bounds), [object.safe_scale]);
+        let safe_scale = match object.stride {
+            Stride::Scale(scale) => scale,
+            Stride::Within(_) => 0.0,
+        };
+        objects[object.index] = record(state, padded(&object.bounds), [safe_scale]);
     }
     let mut media = vec![[0.0; MEDIUM_WORDS]; program.media.len()];
     let cells_at = words.len() + objects.as_flattened().len() + media.as_flattened().len();

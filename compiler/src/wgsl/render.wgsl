@@ -19,6 +19,7 @@ const MAX_STEPS: u32 = 2000u;
 const REFINEMENTS: u32 = 4u;
 const MAX_NODES: i32 = 16384;
 const SHOWS_NORMALS: f32 = 2.0;
+const BY_STEEPNESS: f32 = 0.0;
 const UNLIT: f32 = 1.0;
 const UNSHADOWED: f32 = 2.0;
 const SHADOWED: f32 = 3.0;

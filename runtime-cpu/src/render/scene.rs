@@ -50,7 +50,23 @@ pub(crate) struct Solid<R> {
     pub(crate) shows_normals: bool,
     pub(crate) lo: Vec3<R>,
     pub(crate) hi: Vec3<R>,
-    pub(crate) safe_scale: R,
+    pub(crate) stride: Stride<R>,
+}
+
+/// See [`vol_compiler::frame::Stride`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stride<R> {
+    Scale(R),
+    Within(FunctionId),
+}
+
+impl<R: Real> Stride<R> {
+    fn new(stride: vol_compiler::frame::Stride) -> Self {
+        match stride {
+            vol_compiler::frame::Stride::Scale(scale) => Self::Scale(R::from_f32(scale)),
+            vol_compiler::frame::Stride::Within(function) => Self::Within(function),
+        }
+    }
 }
 
 /// See [`vol_compiler::frame::MediumFrame`].
@@ -117,7 +133,7 @@ fn solids<R: Real>(frame: &Frame) -> Vec<Solid<R>> {
             shows_normals: object.shows_normals,
             lo: vector(bounds.lo),
             hi: vector(bounds.hi),
-            safe_scale: R::from_f32(object.safe_scale),
+            stride: Stride::new(object.stride),
         })
     };
     frame.objects.iter().filter_map(solid).collect()

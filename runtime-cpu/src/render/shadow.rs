@@ -61,7 +61,7 @@ impl<F: Fields> Integrator<'_, F> {
         let outside = vec![F::Real::ONE; self.scene.solids.len()];
         let spans = self.object_spans(&paths, &outside);
         let mut walkers: Vec<_> = start(rays.len());
-        for _ in 0..MAX_STEPS {
+        for step in 1..=MAX_STEPS {
             let near = self.nearest(&paths, &spans, &walkers, &outside);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
@@ -71,7 +71,7 @@ impl<F: Fields> Integrator<'_, F> {
                     continue;
                 }
                 let ray = &rays[walker.ray];
-                let t = walker.t + near.distance.min(near.gap).max(ray.stride);
+                let t = walker.t + near.advance(step, ray.stride);
                 if t < ray.length.min(F::Real::from_f32(FAR)) {
                     left.push(Walker { ray: walker.ray, t, from: walker.t });
                 }

@@ -1,4 +1,10 @@
-//! Where rays meet solids: sphere tracing.
+//! Where rays meet solids: sphere tracing, and segment tracing (Galin et al. 2020) of what is steeper
+//! than a distance.
+//!
+//! A distance can be walked as it is. Displaced solids and fields of the author's own change faster: their
+//! value is divided by a bound on their slope over the very piece of the ray that is about to be walked,
+//! at most twice as long as the last. So a bound that is loose over long pieces costs a shorter step, never
+//! a hole.
 //!
 //! All rays of a batch walk together, one step each at a time, and every solid is evaluated for
 //! the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
@@ -12,7 +18,7 @@
 
 use super::camera::{FAR, Ray, Span, contains, slab};
 use super::fields::{Fields, Points};
-use super::scene::{Batches, Integrator, Scene};
+use super::scene::{Batches, Integrator, Scene, Solid, Stride};
 use crate::real::{Real, Vec3, length, scale};
 
 /// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
@@ -39,6 +45,26 @@ pub(crate) struct Walker<R> {
     pub(crate) from: R,
 }
 
+impl<R: Real> Walker<R> {
+    /// How far the next step may go: to where a distance proper would, and at most twice as far as
+    /// the last, if there was one.
+    fn reach(&self, value: R) -> R {
+        let last = self.t - self.from;
+        let twice = R::from_f32(2.0) * last;
+        let value = value.max(R::ZERO);
+        if last > R::ZERO { value.min(twice) } else { value }
+    }
+}
+
+/// Corners of the box of a piece of a ray, a little larger than rounding can make it.
+fn way<R: Real>(scene: &Scene<R>, ray: &Ray<R>, t: R, reach: R) -> [Vec3<R>; 2] {
+    let (from, to) = (ray.at(t), ray.at(t + reach));
+    let slack = R::from_f32(4.0 * EPSILON) * (scene.remoteness + (t + reach));
+    let lo = [0, 1, 2].map(|axis| from[axis].min(to[axis]) - slack);
+    let hi = [0, 1, 2].map(|axis| from[axis].max(to[axis]) + slack);
+    [lo, hi]
+}
+
 /// What a walker has around it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Near<R> {
@@ -48,6 +74,21 @@ pub(crate) struct Near<R> {
     pub(crate) solid: usize,
     /// Distance along the ray to the next box.
     pub(crate) gap: R,
+    /// Distance along the ray to the last end of the boxes in which it is.
+    pub(crate) rest: R,
+}
+
+impl<R: Real> Near<R> {
+    /// How far to walk: as far as nothing can be, at least by `least`. A ray that has used up half of its
+    /// steps is stuck at a surface that it grazes, or in a field that is nearly flat: it goes through what
+    /// is left of the boxes in even steps, rather than end in a hole.
+    pub(crate) fn advance(&self, step: u32, least: R) -> R {
+        let free = self.distance.min(self.gap);
+        let stuck = step > MAX_STEPS / 2;
+        let left = R::from_index((MAX_STEPS - step + 1) as i32);
+        let even = if stuck { (self.rest / left).min(self.gap) } else { R::ZERO };
+        free.max(least).max(even)
+    }
 }
 
 /// Where a ray meets a solid.
@@ -138,7 +179,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
         sides: &[F::Real],
     ) -> Vec<Near<F::Real>> {
         let far = F::Real::from_f32(FAR);
-        let mut all = vec![Near { distance: far, solid: 0, gap: far }; walkers.len()];
+        let mut all = vec![Near { distance: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
         for (index, solid) in scene.solids.iter().enumerate() {
             // Find the walkers in this solid's box, and how far the others are from it.
@@ -149,15 +190,18 @@ impl<'a, F: Fields> Integrator<'a, F> {
                 if span.is_some() && walker.t < span.entry {
                     all[which].gap = all[which].gap.min(span.entry - walker.t);
                 } else if span.is_some() && walker.t <= span.exit {
+                    all[which].rest = all[which].rest.max(span.exit - walker.t);
                     here.push(which);
                     points.push(rays[walker.ray].at(walker.t));
                 }
             }
             // Keep the smallest distance; the earlier solid on a tie.
-            let [distances] = self.fields.sample(solid.distance, &points);
+            let [mut safe] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
-            for (which, distance) in here.into_iter().zip(distances) {
-                let safe = solid.safe_scale * (sides[index] * distance);
+            safe.iter_mut().for_each(|value| *value = sides[index] * *value);
+            let there = || here.iter().map(|&which| &walkers[which]);
+            self.shorten(solid, rays, there, &mut safe);
+            for (which, safe) in here.into_iter().zip(safe) {
                 if safe < all[which].distance {
                     all[which].distance = safe;
                     all[which].solid = index;
@@ -165,6 +209,41 @@ impl<'a, F: Fields> Integrator<'a, F> {
             }
         }
         all
+    }
+
+    /// Makes values of a solid's field safe to walk; what is inside stays as it is.
+    fn shorten<'w, W: Iterator<Item = &'w Walker<F::Real>>>(
+        &mut self,
+        solid: &Solid<F::Real>,
+        rays: &[Ray<F::Real>],
+        there: impl Fn() -> W,
+        values: &mut [F::Real],
+    ) where
+        F::Real: 'w,
+    {
+        let steepness = match solid.stride {
+            Stride::Within(steepness) => steepness,
+            Stride::Scale(scale) => {
+                values.iter_mut().for_each(|value| *value = scale * *value);
+                return;
+            }
+        };
+        // As far as a step may go, and the box of what is on the way.
+        let reaches: Vec<_> = there().zip(&*values).map(|(walker, &value)| walker.reach(value)).collect();
+        let [mut lo, mut hi] = [(); 2].map(|()| std::array::from_fn(|_| Vec::with_capacity(reaches.len())));
+        for (walker, &reach) in there().zip(&reaches) {
+            let place = way(self.scene, &rays[walker.ray], walker.t, reach);
+            for axis in 0..3 {
+                lo[axis].push(place[0][axis]);
+                hi[axis].push(place[1][axis]);
+            }
+        }
+        let [lo, hi]: [[Vec<F::Real>; 3]; 2] = [lo, hi];
+        let [steepest] = self.fields.apply(steepness, &[&lo[0], &lo[1], &lo[2], &hi[0], &hi[1], &hi[2]]);
+        self.stats.surface_evaluations += steepest.len() as u64;
+        for ((value, reach), steepest) in values.iter_mut().zip(reaches).zip(steepest) {
+            *value = if *value > F::Real::ZERO { (*value / steepest).min(reach) } else { *value };
+        }
     }
 
     /// First surface on each ray, in the order of the rays.
@@ -188,7 +267,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
                     continue;
                 }
                 // Walk as far as nothing can be, at least a fortieth of a pixel.
-                let t = walker.t + near.distance.min(near.gap).max(stride(self.scene, walker.t));
+                let t = walker.t + near.advance(step, stride(self.scene, walker.t));
                 if t < F::Real::from_f32(FAR) {
                     left.push(Walker { ray: walker.ray, t, from: walker.t });
                 }

@@ -10,14 +10,14 @@ use super::super::math::{NUMBER, WHOLE};
 use super::super::{
     MAX_RESULTS, Op, Operation, Results, Ty, one, one_within, several, several_within, slope,
 };
-use super::{FIELD, PARTS, POINT, SPACE, WITH_GRADIENT, none};
+use super::{FIELD, PARTS, POINT, SPACE, WITH_GRADIENT, none, ranges};
 use crate::error_bound::Bounded;
 use crate::reference::noise::{self, Nearest};
 
 /// Coordinates of random numbers are held within ± this.
 const WHOLES: f64 = 16_777_216.0;
 /// Distances are held at this.
-const FARTHEST: f64 = 1.0;
+pub(super) const FARTHEST: f64 = 1.0;
 /// Own error of a distance: offsets are rounded once, and roots are off by 4.5 ulp. 4.8e-7 was seen over
 /// 3e5 points with every rounding drawn at random, half of this.
 const DISTANCE_ERROR: f64 = 16.0 * UNIT;
@@ -37,6 +37,7 @@ pub(in super::super) const WORLEY: Operation = Operation {
         let parts = graph.apply_all(Op::WorleyGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
     },
+    range: |graph, _, _| Some(vec![ranges::distance(graph)[0]]),
     wgsl: "vol_worley(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 3],
@@ -52,6 +53,7 @@ pub(in super::super) const WORLEY_GRADIENT: Operation = Operation {
     interval: |x, context| bounds([x[0], x[1], x[2]], context.data),
     error: |x, e, _, context| errors([0, 1, 2].map(|i| operand(x, e, i)), context.data),
     derivative: none,
+    range: |graph, _, _| Some(ranges::distance(graph)),
     wgsl: "vol_worley_gradient(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: PARTS,
     domain: &[SPACE; 3],
@@ -77,6 +79,7 @@ pub(in super::super) const HASH: Operation = Operation {
         one(decision(x.iter().zip(e).all(sure)))
     },
     derivative: |graph, _, _, _, _| Some(vec![graph.number(0.0)]),
+    range: |graph, _, _| Some(vec![ranges::cell(graph)]),
     wgsl: "vol_hash(vec4f({0}, {1}, {2}, {3}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 4],

@@ -20,6 +20,7 @@ const WITH_GRADIENT4: &[Ty] = &[Ty::Number; 5];
 /// Own errors: 6.5e-7 and, of a partial derivative, 2.1e-6 were seen over 3e6 points with every rounding
 /// drawn at random.
 const SPACE_TIME: Smooth = Smooth {
+    dimensions: 4,
     gradient: |p, seed| several(&noise::perlin4_gradient([p[0], p[1], p[2], p[3]], seed)),
     largest: 1.536_582_334_1,
     steepest: 5.625,
@@ -30,6 +31,7 @@ const SPACE_TIME: Smooth = Smooth {
 
 /// Own errors likewise: 6.1e-7, 1.6e-6.
 const RANDOM_CORNERS: Smooth = Smooth {
+    dimensions: 3,
     gradient: |p, seed| several(&noise::value_gradient([p[0], p[1], p[2]], seed)),
     largest: 1.0,
     steepest: 3.75,
@@ -40,6 +42,7 @@ const RANDOM_CORNERS: Smooth = Smooth {
 
 /// Own errors likewise: 1.4e-6, 8.3e-6.
 const TETRAHEDRA: Smooth = Smooth {
+    dimensions: 3,
     gradient: |p, seed| several(&noise::simplex_gradient([p[0], p[1], p[2]], seed)),
     largest: 1.0,
     steepest: 6.967,
@@ -61,6 +64,7 @@ pub(in super::super) const PERLIN4: Operation = Operation {
         let parts = graph.apply_all(Op::Perlin4Gradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
     },
+    range: |graph, _, _| Some(vec![SPACE_TIME.ranges(graph)[0]]),
     wgsl: "vol_perlin4(vec4f({0}, {1}, {2}, {3}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 4],
@@ -76,6 +80,7 @@ pub(in super::super) const PERLIN4_GRADIENT: Operation = Operation {
     interval: |x, context| SPACE_TIME.bounds(x, context.data),
     error: |x, e, _, context| SPACE_TIME.errors(x, e, context.data),
     derivative: none,
+    range: |graph, _, _| Some(SPACE_TIME.ranges(graph)),
     wgsl: "vol_perlin4_gradient(vec4f({0}, {1}, {2}, {3}), {d}u)",
     wgsl_extract: &[".value", ".gradient.x", ".gradient.y", ".gradient.z", ".gradient.w"],
     domain: &[SPACE; 4],
@@ -94,6 +99,7 @@ pub(in super::super) const VALUE: Operation = Operation {
         let parts = graph.apply_all(Op::ValueGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
     },
+    range: |graph, _, _| Some(vec![RANDOM_CORNERS.ranges(graph)[0]]),
     wgsl: "vol_value(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 3],
@@ -109,6 +115,7 @@ pub(in super::super) const VALUE_GRADIENT: Operation = Operation {
     interval: |x, context| RANDOM_CORNERS.bounds(x, context.data),
     error: |x, e, _, context| RANDOM_CORNERS.errors(x, e, context.data),
     derivative: none,
+    range: |graph, _, _| Some(RANDOM_CORNERS.ranges(graph)),
     wgsl: "vol_value_gradient(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: PARTS,
     domain: &[SPACE; 3],
@@ -127,6 +134,7 @@ pub(in super::super) const SIMPLEX: Operation = Operation {
         let parts = graph.apply_all(Op::SimplexGradient, seed, x);
         Some(vec![slope::along(graph, &parts[1..], d)])
     },
+    range: |graph, _, _| Some(vec![TETRAHEDRA.ranges(graph)[0]]),
     wgsl: "vol_simplex(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: WHOLE,
     domain: &[SPACE; 3],
@@ -142,6 +150,7 @@ pub(in super::super) const SIMPLEX_GRADIENT: Operation = Operation {
     interval: |x, context| TETRAHEDRA.bounds(x, context.data),
     error: |x, e, _, context| TETRAHEDRA.errors(x, e, context.data),
     derivative: none,
+    range: |graph, _, _| Some(TETRAHEDRA.ranges(graph)),
     wgsl: "vol_simplex_gradient(vec3f({0}, {1}, {2}), {d}u)",
     wgsl_extract: PARTS,
     domain: &[SPACE; 3],

@@ -11,6 +11,8 @@ use crate::error_bound::Bounded;
 
 /// What holds of a noise everywhere and for every seed.
 pub(super) struct Smooth {
+    /// How many coordinates it takes.
+    pub(super) dimensions: usize,
     /// Value and partial derivatives in f64.
     pub(super) gradient: fn(&[f64], u32) -> Results<f64>,
     /// Largest absolute value.

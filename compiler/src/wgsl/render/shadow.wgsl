@@ -18,12 +18,14 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     var spans = object_spans(ray, &sides);
     let end = min(distance, FAR);
     var t = 0.0;
+    var before = 0.0;
     var inside = false;
-    for (var count = 0u; count < MAX_STEPS; count++) {
+    for (var count = 1u; count <= MAX_STEPS; count++) {
         // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
-        let near = nearest(ray, &spans, &sides, t);
+        let near = nearest(ray, &spans, &sides, t, before);
         inside = near.distance < 0.0;
-        t += max(min(near.distance, near.gap), least);
+        before = t;
+        t += advance(near, count, least);
         if (inside | (t >= end)) {
             break;
         }

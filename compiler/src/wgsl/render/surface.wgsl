@@ -1,10 +1,11 @@
-// Where rays meet solids: sphere tracing.
+// Where rays meet solids: sphere tracing, and segment tracing of what is steeper than a distance.
 // Twin: runtime-cpu/src/render/surface.rs, which says why.
 
 struct Near {
     distance: f32,
     solid: u32,
     gap: f32,
+    rest: f32,
 }
 
 struct Contact {
@@ -88,29 +89,64 @@ fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> arr
     return spans;
 }
 
-// What is around a place on the ray.
+// Makes the value of a solid's field safe to walk; what is inside stays as it is.
+fn shorten(solid: u32, ray: Ray, t: f32, before: f32, value: f32) -> f32 {
+    let scale = vol_input[object_word(solid) + 7u];
+    if (scale != BY_STEEPNESS) {
+        return scale * value;
+    }
+    // As far as a step may go, and the box of what is on the way.
+    let ahead = reach(t, before, value);
+    let slack = (4.0 * EPSILON) * (remoteness() + (t + ahead));
+    let here = ray_at(ray, t);
+    let there = ray_at(ray, t + ahead);
+    let steepest = object_steepness(solid, min(here, there) - slack, max(here, there) + slack);
+    return select(value, min(value / steepest, ahead), value > 0.0);
+}
+
+// How far the next step may go: to where a distance proper would, and at most twice as far as the last,
+// if there was one.
+fn reach(t: f32, before: f32, value: f32) -> f32 {
+    let last = t - before;
+    let outside = max(value, 0.0);
+    return select(outside, min(outside, 2.0 * last), last > 0.0);
+}
+
+// What is around a place on the ray, `before` that of the last step.
 fn nearest(
     ray: Ray,
     spans: ptr<function, array<Span, OBJECT_SLOTS>>,
     sides: ptr<function, array<f32, OBJECT_SLOTS>>,
     t: f32,
+    before: f32,
 ) -> Near {
-    var near = Near(FAR, 0u, FAR);
+    var near = Near(FAR, 0u, FAR, 0.0);
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let span = (*spans)[solid];
         let some = span.entry <= span.leave;
-        let before = some & (t < span.entry);
-        near.gap = select(near.gap, min(near.gap, span.entry - t), before);
+        let ahead = some & (t < span.entry);
+        near.gap = select(near.gap, min(near.gap, span.entry - t), ahead);
         if (some & (t >= span.entry) & (t <= span.leave)) {
+            near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
-            let safe = vol_input[object_word(solid) + 7u] * seen;
+            let safe = shorten(solid, ray, t, before, seen);
             let closer = safe < near.distance;
             near.distance = select(near.distance, safe, closer);
             near.solid = select(near.solid, solid, closer);
         }
     }
     return near;
+}
+
+// How far to walk: as far as nothing can be, at least by `least`. A ray that has used up half of its steps
+// goes through what is left of the boxes in even steps.
+fn advance(near: Near, step: u32, least: f32) -> f32 {
+    let free = min(near.distance, near.gap);
+    let stuck = step > (MAX_STEPS / 2u);
+    let left = f32((MAX_STEPS - step) + 1u);
+    let even = select(0.0, min(near.rest / left, near.gap), stuck);
+    return max(max(free, least), even);
 }
 
 // First surface on the ray.
@@ -122,12 +158,12 @@ fn trace(ray: Ray) -> Contact {
     var hit = false;
     var solid = 0u;
     for (var count = 1u; count <= MAX_STEPS; count++) {
-        let near = nearest(ray, &spans, &sides, t);
+        let near = nearest(ray, &spans, &sides, t, before);
         // Stop inside a solid; on the last step also where it would have been near enough.
         hit = near.distance < select(0.0, tolerance(t), count == MAX_STEPS);
         solid = near.solid;
         // Walk as far as nothing can be, at least a fortieth of a pixel.
-        let next = t + max(min(near.distance, near.gap), stride(t));
+        let next = t + advance(near, count, stride(t));
         if (hit | (next >= FAR)) {
             break;
         }

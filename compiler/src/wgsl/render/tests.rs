@@ -1,5 +1,5 @@
 use super::*;
-use crate::frame::{CameraFrame, LightFrame, ObjectFrame};
+use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Stride};
 use crate::ir::text;
 use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
 use vol_language::source::Span;
@@ -18,6 +18,7 @@ fn program(objects: usize, media: usize) -> Program {
         name: "ball".to_owned(),
         distance: FunctionId(0),
         gradient: FunctionId(1),
+        steepness: None,
         surface: FunctionId(2),
         shows_normals: false,
         extent: Extent::Unbounded,
@@ -72,7 +73,7 @@ fn frame(program: &Program) -> Frame {
             surface: object.surface,
             shows_normals: true,
             bounds: whole,
-            safe_scale: 0.25,
+            stride: Stride::Scale(0.25),
         }],
         media: vec![MediumFrame {
             index: 0,

@@ -3,7 +3,7 @@
 use super::super::{Batches, Stats, Watch, render_batches};
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{
-    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel,
+    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Stride,
 };
 use vol_compiler::ir::{Function, FunctionId, Inst, Module, Number, ValueId};
 use vol_compiler::ops::Op;
@@ -207,12 +207,13 @@ impl World {
             surface,
             shows_normals: false,
             bounds,
-            safe_scale,
+            stride: Stride::Scale(safe_scale),
         });
         self.program.objects.push(Object {
             name: "solid".to_owned(),
             distance,
             gradient,
+            steepness: None,
             surface,
             shows_normals: false,
             extent: Extent::Unbounded,

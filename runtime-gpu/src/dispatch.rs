@@ -6,6 +6,7 @@
 //! A desktop driver may reset a device that is busy with one dispatch for seconds: split a long render into several.
 
 use std::sync::mpsc;
+use std::time::Duration;
 
 use crate::device::Gpu;
 use crate::error::GpuError;
@@ -13,6 +14,9 @@ use crate::pipeline::Kernel;
 
 /// Most workgroups along one axis of a dispatch, on any WebGPU device.
 pub const MAX_GROUPS_PER_AXIS: u32 = 65_535;
+
+/// How long the answer of a finished copy may take.
+const ANSWER: Duration = Duration::from_secs(10);
 
 /// Size of the allocation behind an empty buffer, in bytes: wgpu knows none of size zero, and a binding must hold one array element.
 const EMPTY_BYTES: u64 = 256;
@@ -213,7 +217,8 @@ impl Gpu {
         // Wait for the copy, and with it for all that came before.
         self.poll(wgpu::PollType::wait_indefinitely())?;
         let refused = |message: String| GpuError::Driver { what: "reading a buffer".to_owned(), message };
-        match receiver.try_recv() {
+        // The copy is done, but the answer may still be on its way through another thread that polls.
+        match receiver.recv_timeout(ANSWER) {
             Ok(Ok(())) => {}
             Ok(Err(error)) => return Err(refused(error.to_string())),
             Err(_) => return Err(refused("the device never answered".to_owned())),

@@ -239,7 +239,7 @@ fn pow(graph: &mut Graph, args: &[ValueId]) -> ValueId {
 }
 
 /// By repeated squaring.
-fn whole_power(graph: &mut Graph, base: ValueId, mut power: u32) -> ValueId {
+pub(crate) fn whole_power(graph: &mut Graph, base: ValueId, mut power: u32) -> ValueId {
     let mut product = graph.number(1.0);
     let mut square = base;
     while power > 0 {

@@ -102,7 +102,7 @@ impl Lowerer<'_> {
     }
 
     /// Bound on the steps of a loop. What a run counts is held within the range of its params.
-    fn most_steps(&mut self, count: ValueId, span: Span) -> Lowered<u32> {
+    pub(super) fn most_steps(&mut self, count: ValueId, span: Span) -> Lowered<u32> {
         if let Some(count) = self.graph.constant(count) {
             if count > f64::from(MAX_STEPS) {
                 return Err(too_many(count, span));

@@ -5,6 +5,7 @@
 //! | room | holds |
 //! |---|---|
 //! | `primitives` | solids that are not made of others |
+//! | `mandelbulb` | one of them, a fractal |
 //! | `blend` | how two surfaces meet |
 //! | `transform` | maps of space |
 //! | `copies` | repetition |
@@ -12,6 +13,7 @@
 
 pub(crate) mod blend;
 pub(crate) mod copies;
+pub(crate) mod mandelbulb;
 pub(crate) mod primitives;
 mod steepness;
 pub(crate) mod transform;

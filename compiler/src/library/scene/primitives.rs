@@ -2,6 +2,7 @@
 
 use super::whole;
 use crate::library::{Builtin, call, math, optional, required};
+use crate::lower::shape::mandelbulb::Mandelbulb;
 use crate::lower::shape::primitives::Primitive;
 use crate::lower::shape::{Kind, Shape};
 use crate::lower::value::Value;
@@ -88,6 +89,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             },
         ),
         implicit_builtin(),
+        mandelbulb(),
     ]
     .into_iter()
     .chain(pointed())
@@ -155,6 +157,21 @@ fn pointed() -> Vec<Builtin> {
             },
         ),
     ]
+}
+
+fn mandelbulb() -> Builtin {
+    let params = vec![
+        optional("power", Type::Float, 8.0),
+        optional("iterations", Type::Int, 12.0),
+        optional("detail", Type::Float, 0.001),
+    ];
+    let doc = "the points that z^power + p keeps near, its axis z, radius about 1.2: the surface is detail in front of the set, \
+               power 2 to 32, without trigonometry if it is a constant whole number; a lower bound inside and outside, \
+               but not so steady that round, shell, displace or smooth could rely on it";
+    call("mandelbulb", params, Type::Shape, doc, |lowerer, span, a| {
+        let bulb = Mandelbulb::new(lowerer, [a[0].scalar(), a[1].scalar(), a[2].scalar()], span)?;
+        solid(lowerer, span, Primitive::Mandelbulb(bulb))
+    })
 }
 
 fn implicit_builtin() -> Builtin {

@@ -5,6 +5,7 @@
 //! little inside is that of a face, free of cancellation.
 
 use super::Lowered;
+use super::mandelbulb::Mandelbulb;
 use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 use crate::lower::Lowerer;
@@ -13,7 +14,7 @@ use crate::program::Extent;
 use vol_language::source::Span;
 
 /// Solids at the origin; lengths in scene units, negative distance is inside. All are exact but the
-/// ellipsoid.
+/// ellipsoid and the Mandelbulb.
 #[derive(Debug)]
 pub(crate) enum Primitive {
     /// A ball.
@@ -42,6 +43,8 @@ pub(crate) enum Primitive {
     Octahedron { radius: ValueId },
     /// Axis y; the flat disk of a radius thickened by `rim`.
     Disk { radius: ValueId, rim: ValueId },
+    /// Axis z; a bound.
+    Mandelbulb(Mandelbulb),
 }
 
 impl Primitive {
@@ -85,6 +88,7 @@ impl Primitive {
                 let flat = graph.length(&[radial, p[1]]);
                 graph.sub(flat, *rim)
             }
+            Self::Mandelbulb(bulb) => bulb.distance(graph, p),
         }
     }
 
@@ -111,6 +115,7 @@ impl Primitive {
                 let wide = graph.add(*radius, *rim);
                 [wide, *rim, wide]
             }
+            Self::Mandelbulb(bulb) => bulb.half(graph),
             Self::Capsule { a, b, radius } => {
                 let lo = [0, 1, 2].map(|i| graph.min(a[i], b[i]));
                 let hi = [0, 1, 2].map(|i| graph.max(a[i], b[i]));
@@ -149,7 +154,7 @@ impl Primitive {
                 );
             }
             Self::Disk { radius, rim } => (vec![*radius, *rim], "a radius or thickness"),
-            Self::Plane { .. } => return Ok(()),
+            Self::Plane { .. } | Self::Mandelbulb(_) => return Ok(()),
         };
         lowerer.refuse(&sizes, |x| x < 0.0, &format!("{what} must be at least 0"), span)
     }
@@ -167,6 +172,7 @@ impl Primitive {
             | Self::Disk { .. } => true,
             Self::Cone { .. } | Self::Pyramid { .. } => axis != 1,
             Self::Prism { sides, .. } => axis != 0 || sides % 2 == 0,
+            Self::Mandelbulb(_) => axis == 1,
             Self::Capsule { .. } | Self::Plane { .. } => false,
         }
     }

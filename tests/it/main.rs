@@ -15,10 +15,12 @@ mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod library;
+mod mandelbulb;
 mod noises;
 mod physics;
 mod properties;
 mod shapes;
+mod solid;
 mod spec;
 mod support;
 mod surfaces;
@@ -39,6 +41,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
     trials.extend(library::trials());
+    trials.extend(mandelbulb::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
     trials.extend(properties::trials());

@@ -6,8 +6,8 @@
 //!
 //! ```text
 //! estimate = r (ln r - n^(k - N) ln R) / (2 dr)      z left at iteration k of N, r = |z|
-//!          = (r - R) / (2 dr)                        it did not leave: inside
-//! distance = (estimate - detail) dr / steepest
+//!          = (r - R) / (2 dr (k + 1))                it did not leave: inside
+//! distance = (estimate - detail) dr / steepest      no more than the distance to a cut
 //! ```
 //!
 //! The first is half the potential over its slope, less the potential at which `|z|` is the escape radius
@@ -16,12 +16,15 @@
 //! still leaves and the estimate has a slope, and not the set, whose inside has none that f32 could hold.
 //!
 //! `dr <- n r^(n-1) dr + 1` is the usual derivative. It counts as if the power stretched all directions alike,
-//! but around the pole it stretches by `|sin n theta / sin theta|` up to `n` times more, and where `z` is small the
-//! points about it are not: the estimate by `dr` alone reaches up to 4 times too far. `steepest` counts both.
-//! Its ratio to `dr` scales the distance and does not move the surface.
+//! but around the poles it stretches by `|sin n theta / sin theta|` up to `n` times more, which `df` counts; and
+//! where `z` comes near 0 the derivative is small and that of the points about it is not, so `steepest` is the
+//! largest `df` on the way; inside, where all derivatives may stay small, also the number of iterations counts.
+//! By `dr` alone the distance would reach up to 4 times too far. The ratio of the two
+//! scales the distance and does not move the surface.
 //!
-//! Method: Hart, Sandin, Kauffman 1989; White and Nylander's power; `algorithms.md` §7.1. Iterations end where
-//! `dr` has come to [`FINEST`] / detail, so nothing overflows however many are asked for.
+//! Method: Hart, Sandin, Kauffman 1989; White and Nylander's power; `algorithms.md` §7.1. Iterations end where a
+//! derivative is so large that the estimate is far below the detail, so nothing overflows however many are
+//! asked for.
 
 use super::primitives::clamped;
 use crate::ir::ValueId;
@@ -39,6 +42,9 @@ const LEAST_DETAIL: f64 = 1e-6;
 
 /// With the derivative at this over the detail the estimate is a small part of the detail.
 const FINEST: f64 = 64.0;
+
+/// As [`FINEST`] for the derivative in the steepest direction, which the estimate does not see.
+const FINEST_ANY: f64 = 4096.0;
 
 /// `|z|^n` where the iteration ends, as a power of 2: there one more would change the estimate by 1 / 256.
 const BAIL_BITS: f64 = 8.0;
@@ -78,7 +84,8 @@ struct State {
     z: [ValueId; 3],
     /// Derivative of `|z|`, as if the power were conformal.
     slope: ValueId,
-    /// Bound on the derivative in any direction.
+    /// Bound on the derivative in any direction, and the largest one so far.
+    any: ValueId,
     steepest: ValueId,
     /// Iterations so far.
     count: ValueId,
@@ -148,7 +155,7 @@ impl Mandelbulb {
         let (zero, one) = (graph.number(0.0), graph.number(1.0));
         let whole = self.whole(graph);
         let cuts = whole.is_none();
-        let mut first = vec![p[0], p[1], p[2], one, one, zero];
+        let mut first = vec![p[0], p[1], p[2], one, one, one, zero];
         first.extend(cuts.then(|| graph.number(1.0 / TINY)));
         let state: Vec<ValueId> = first.iter().map(|_| graph.placeholder()).collect();
         let at = State::of(&state);
@@ -161,10 +168,11 @@ impl Mandelbulb {
         let mut next: Vec<ValueId> = power.z.iter().zip(p).map(|(&z, p)| graph.add(z, p)).collect();
         let grown = graph.mul(power.slope, at.slope);
         next.push(graph.add(grown, one));
-        let floor = graph.max(power.slope, one);
-        let factor = graph.mul(floor, power.stretch);
-        let grown = graph.mul(factor, at.steepest);
-        next.push(graph.add(grown, one));
+        let factor = graph.mul(power.slope, power.stretch);
+        let grown = graph.mul(factor, at.any);
+        let any = graph.add(grown, one);
+        next.push(any);
+        next.push(graph.max(at.steepest, any));
         next.push(graph.add(at.count, one));
         if let (Some(cut), Some(before)) = (power.cut, at.cut) {
             let here = graph.div(cut, at.steepest);
@@ -181,13 +189,18 @@ impl Mandelbulb {
 
     /// Whether `z` has neither left nor been followed far enough.
     fn goes_on(&self, graph: &mut Graph, sizes: &Sizes, at: &State) -> ValueId {
-        let (bits, finest) = (graph.number(2.0 * BAIL_BITS), graph.number(FINEST));
+        let bits = graph.number(2.0 * BAIL_BITS);
         let squared = graph.dot(&at.z, &at.z);
         let bits = graph.div(bits, sizes.power);
         let bail = graph.apply(Op::Exp2, &[bits]);
         let stays = graph.apply(Op::Less, &[squared, bail]);
-        let most = graph.div(finest, sizes.detail);
-        let coarse = graph.apply(Op::Less, &[at.slope, most]);
+        let mut coarse = |derivative: ValueId, finest: f64| {
+            let finest = graph.number(finest);
+            let most = graph.div(finest, sizes.detail);
+            graph.apply(Op::Less, &[derivative, most])
+        };
+        let coarse = [coarse(at.slope, FINEST), coarse(at.any, FINEST_ANY)];
+        let coarse = graph.apply(Op::And, &coarse);
         let goes_on = graph.apply(Op::And, &[stays, coarse]);
         if graph.constant(self.iterations).is_some() {
             return goes_on;
@@ -200,7 +213,8 @@ impl Mandelbulb {
 
     /// The distance that the last state tells.
     fn level(&self, graph: &mut Graph, sizes: &Sizes, last: &State) -> ValueId {
-        let (zero, half, ln_2) = (graph.number(0.0), graph.number(0.5), graph.number(LN_2));
+        let (zero, one) = (graph.number(0.0), graph.number(1.0));
+        let (half, ln_2) = (graph.number(0.5), graph.number(LN_2));
         let r = graph.length(&last.z);
         // ln r less the logarithm of the escape radius after the last iteration, n^(k - N) times smaller here.
         let left = match graph.constant(self.iterations) {
@@ -219,6 +233,8 @@ impl Mandelbulb {
         let outside = graph.mul(r, potential);
         let inside = graph.sub(r, sizes.escape);
         let stays = graph.apply(Op::Less, &[inside, zero]);
+        let passed = graph.add(last.count, one);
+        let inside = graph.div(inside, passed);
         let off = graph.select(stays, inside, outside);
         let off = graph.mul(half, off);
         let estimate = graph.div(off, last.slope);
@@ -226,7 +242,9 @@ impl Mandelbulb {
         let safe = graph.div(last.slope, last.steepest);
         let distance = graph.mul(level, safe);
         // What is beyond a cut is not seen by the estimate.
-        last.cut.map_or(distance, |cut| graph.min(cut, distance))
+        let Some(cut) = last.cut else { return distance };
+        let low = graph.apply(Op::Neg, &[cut]);
+        clamped(graph, distance, low, cut)
     }
 }
 
@@ -235,9 +253,10 @@ impl State {
         Self {
             z: [numbers[0], numbers[1], numbers[2]],
             slope: numbers[3],
-            steepest: numbers[4],
-            count: numbers[5],
-            cut: numbers.get(6).copied(),
+            any: numbers[4],
+            steepest: numbers[5],
+            count: numbers[6],
+            cut: numbers.get(7).copied(),
         }
     }
 }
@@ -304,12 +323,7 @@ fn fraction(graph: &mut Graph, components: &[ValueId], length: ValueId) -> Vec<V
 }
 
 /// `(cos n a, u_n)` from `(cos a, u_1)`, where `sin k a = s u_k` and `square` is s^2, by repeated squaring.
-fn multiple(
-    graph: &mut Graph,
-    mut n: u32,
-    angle: (ValueId, ValueId),
-    square: ValueId,
-) -> (ValueId, ValueId) {
+fn multiple(graph: &mut Graph, mut n: u32, angle: (ValueId, ValueId), square: ValueId) -> (ValueId, ValueId) {
     let product = |graph: &mut Graph, a: (ValueId, ValueId), b: (ValueId, ValueId)| {
         let sines = graph.mul(a.1, b.1);
         let sines = graph.mul(sines, square);

@@ -16,8 +16,10 @@ mod generated;
 mod gpu_device;
 mod library;
 mod mandelbulb;
+mod nearest;
 mod noises;
 mod physics;
+mod primitives;
 mod properties;
 mod shapes;
 mod solid;
@@ -44,6 +46,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(mandelbulb::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());
+    trials.extend(primitives::trials());
     trials.extend(properties::trials());
     trials.extend(shapes::trials());
     trials.extend(surfaces::trials());

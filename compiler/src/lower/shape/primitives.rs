@@ -325,7 +325,8 @@ fn polygon_distance(graph: &mut Graph, p: [ValueId; 3], sides: u32, radius: Valu
 fn pyramid_distance(graph: &mut Graph, p: [ValueId; 3], half: ValueId, half_height: ValueId) -> ValueId {
     let zero = graph.number(0.0);
     let (x, z) = (graph.apply(Op::Abs, &[p[0]]), graph.apply(Op::Abs, &[p[2]]));
-    let (x, z) = (graph.max(x, z), graph.min(x, z));
+    // Of two equal ones each is taken once, so that the slope has both.
+    let (x, z) = (graph.max(x, z), graph.min(z, x));
     let y = graph.add(p[1], half_height);
     let height = graph.add(half_height, half_height);
     // Coordinates of the face: s up the slope from the middle of its base, z along the base, n across.

@@ -62,6 +62,7 @@ pub struct Rendered {
 fn counts_of_cpu(stats: &vol_runtime_cpu::Stats) -> Counts {
     let samples = stats.medium_samples + stats.shadow_samples;
     Counts {
+        camera_rays: stats.rays,
         rays: stats.rays + stats.shadow_rays,
         samples,
         evaluations: samples + stats.surface_evaluations + stats.region_evaluations,

@@ -80,14 +80,21 @@ pub(crate) struct Render {
     /// CPU threads [default: as many as the machine has cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Seed of the sample pattern; nothing is random at present, so the picture does not depend on
-    /// it, but it is recorded in --stats
+    /// Seed of the sample pattern; it is the same for all seeds at present, so the picture does not
+    /// depend on it, but it is recorded in --stats
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
     /// Error allowed from sampling media, root mean square over the picture relative to its
     /// brightness; the distance between samples is chosen to meet it
     #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = values::max_error)]
     pub(crate) max_error: f32,
+    /// Rays per pixel, 1 to 4096, instead of the scene's; with an adaptive error the most
+    #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
+    pub(crate) samples: Option<u32>,
+    /// Standard error of a pixel relative to its brightness at which it takes no more samples,
+    /// instead of the scene's; 0 for as many samples everywhere
+    #[arg(long, value_name = "E", value_parser = values::adaptive, allow_negative_numbers = true)]
+    pub(crate) adaptive: Option<f32>,
     /// Write what was done and how long it took to this JSON file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,

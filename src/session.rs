@@ -13,10 +13,11 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use vol_compiler::frame::Frame;
+use vol_compiler::frame::{Frame, Sampling};
 use vol_compiler::program::{Field, Program, Slot};
 use vol_compiler::{library, lower};
 use vol_language::Analysis;
+use vol_language::blocks::MAX_SAMPLES;
 use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
 use vol_language::nearest::nearest;
@@ -226,6 +227,31 @@ impl Session {
         }
         let text = format!("`{}` renders {fps} frames per second", self.sources.root().name);
         Err(Failure::content(text).with_help("set `fps` of the render block to a number above 0"))
+    }
+
+    /// How many samples the scene asks for at a moment.
+    ///
+    /// # Errors
+    /// A content failure if it is no number of samples, or the error is no number from 0 to 1.
+    pub fn sampling(&self, params: &[Vec<f64>], moment: Moment) -> Result<Sampling, Failure> {
+        let numbers = self.program.numbers(params, moment.time, moment.frame);
+        let [samples, adaptive] = [self.program.render.samples, self.program.render.adaptive]
+            .map(|Slot(slot)| numbers[slot as usize]);
+        let name = &self.sources.root().name;
+        if !(samples.fract() == 0.0 && (1.0..=f64::from(MAX_SAMPLES)).contains(&samples)) {
+            let failure = Failure::content(format!("`{name}` takes {samples} samples per pixel"));
+            let range =
+                format!("set `samples` of the render block to a whole number from 1 to {MAX_SAMPLES}");
+            return Err(failure.with_help(range));
+        }
+        // As the renderer sees it: the largest number below 1 may round to 1.
+        let tolerance = adaptive as f32;
+        if !(0.0..1.0).contains(&tolerance) {
+            let failure = Failure::content(format!("`{name}` samples adaptively to an error of {adaptive}"));
+            let range = "set `adaptive` of the render block to a number from 0 to below 1";
+            return Err(failure.with_help(range));
+        }
+        Ok(Sampling { most: samples as u32, tolerance })
     }
 
     /// The field called `name`.

@@ -137,6 +137,31 @@ pub struct Job {
     pub step: f32,
     /// Distance between samples along shadow rays through media; positive.
     pub shadow_step: f32,
+    /// Rays per pixel.
+    pub sampling: Sampling,
+}
+
+/// How many rays a pixel is the mean of. Where they go and when a pixel has enough of them is told
+/// in `runtime-cpu/src/render/sampling.rs`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// Samples of each pixel; the most, if there is a tolerance. 1 to
+    /// [`MAX_SAMPLES`](vol_language::blocks::MAX_SAMPLES); 1 is the pixel's centre.
+    pub most: u32,
+    /// Standard error of a pixel relative to its brightness at which it takes no more samples, in
+    /// 0..1; 0 for as many samples everywhere.
+    pub tolerance: f32,
+}
+
+impl Sampling {
+    /// One ray through each pixel's centre.
+    pub const CENTRE: Self = Self { most: 1, tolerance: 0.0 };
+
+    /// The same number of samples for each pixel.
+    #[must_use]
+    pub const fn uniform(samples: u32) -> Self {
+        Self { most: samples, tolerance: 0.0 }
+    }
 }
 
 /// Scene-linear picture, row 0 at the top.
@@ -150,20 +175,24 @@ pub struct Image {
     pub pixels: Vec<Pixel>,
 }
 
-/// What one camera ray brings back.
+/// What a pixel's camera rays bring back.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pixel {
-    /// Radiance, background included.
+    /// Radiance, background included: the mean over the samples.
     pub color: [f32; 3],
-    /// Fraction of the background's light that arrives: 0 where a surface is hit.
+    /// Fraction of the background's light that arrives, 0 where a surface is hit: the mean over the
+    /// samples.
     pub transmittance: [f32; 3],
-    /// Distance of the first surface along the viewing axis; infinite where there is none.
+    /// Distance along the viewing axis of the first surface in the pixel's centre; infinite where there
+    /// is none. A mean of distances would lie where nothing is.
     pub depth: f32,
 }
 
 /// How much was computed for a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
+    /// Camera rays: samples of pixels.
+    pub camera_rays: u64,
     /// Camera and shadow rays.
     pub rays: u64,
     /// Points inside media at which their properties were computed.
@@ -178,6 +207,7 @@ impl Counts {
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
+            camera_rays: self.camera_rays + other.camera_rays,
             rays: self.rays + other.rays,
             samples: self.samples + other.samples,
             evaluations: self.evaluations + other.evaluations,

@@ -233,6 +233,10 @@ pub struct Render {
     pub size: [u32; 2],
     /// Radiance where nothing is hit.
     pub background: Slot3,
+    /// Samples of a pixel, or the most: see [`crate::frame::Sampling`].
+    pub samples: Slot,
+    /// Error at which a pixel takes no more samples.
+    pub adaptive: Slot,
     /// Length of the animation in seconds.
     pub duration: Slot,
     /// Frames per second.

@@ -20,6 +20,9 @@ pub enum BlockKind {
     Render,
 }
 
+/// Largest number of samples per pixel.
+pub const MAX_SAMPLES: u32 = 4096;
+
 /// All kinds, in the order in which messages list them.
 pub const BLOCK_KINDS: [BlockKind; 6] = [
     BlockKind::Camera,
@@ -169,6 +172,16 @@ fn render() -> Vec<Key> {
         key("size", Type::Vec2, "width and height in pixels; default (960, 540)"),
         key("background", Type::Color, "radiance where nothing is hit; default 0"),
         key("ambient", Type::Color, "ambient light that `phong` multiplies with ka; default 1"),
+        key(
+            "samples",
+            Type::Int,
+            "rays per pixel, 1 to 4096, of which a pixel is the mean; with `adaptive` the most; default 1",
+        ),
+        key(
+            "adaptive",
+            Type::Float,
+            "standard error of a pixel relative to its brightness at which it takes no more samples, below 1; default 0: all take as many",
+        ),
         key("duration", Type::Float, "length of the animation in seconds; default 0"),
         key("fps", Type::Float, "frames per second; default 30"),
     ]

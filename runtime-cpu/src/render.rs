@@ -3,11 +3,11 @@
 //! One text for two precisions: f32 with the batch evaluator for pictures, f64 with the reference
 //! evaluator to check them. The WGSL twin is `compiler/src/wgsl/render.wgsl` with its folder.
 //!
-//! 1. `camera`: a ray through each pixel's centre.
+//! 1. `sampling`: places in each pixel; `camera`: a ray through each of them.
 //! 2. `surface`: sphere tracing to the first surface, false position onto it, its normal.
 //! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`.
 //! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray.
-//! 5. `film`: `color = L + T * (surface or background)`, tiles, threads.
+//! 5. `film`: `color = L + T * (surface or background)`, tiles, threads; `sampling` takes the mean.
 //!
 //! `pilot` chooses the comb's step.
 //!
@@ -20,6 +20,7 @@ mod fields;
 mod film;
 mod medium;
 mod pilot;
+mod sampling;
 mod scene;
 mod shade;
 mod shadow;
@@ -101,7 +102,7 @@ fn render_batches(
     let started = Instant::now();
     let tapes = Tapes::new(program);
     let scene = Scene::<f32>::new(frame, job);
-    let (pixels, mut stats) = expose(&scene, job.size, batches, &|| Batch::new(&tapes, frame), watch)?;
+    let (pixels, mut stats) = expose(&scene, job, batches, &|| Batch::new(&tapes, frame), watch)?;
     stats.milliseconds = started.elapsed().as_secs_f64() * 1e3;
     let pixels = pixels.into_iter().map(pixel).collect();
     Some((Image { width: job.size[0], height: job.size[1], pixels }, stats))
@@ -121,7 +122,7 @@ fn pixel(radiance: Radiance<f32>) -> Pixel {
 pub fn render_reference(program: &Program, frame: &Frame, job: &Job) -> Vec<[f64; 7]> {
     let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
     let scene = Scene::<f64>::new(frame, job);
-    let picture = expose(&scene, job.size, Batches::DEFAULT, &|| Reference::new(program, frame), &watch);
+    let picture = expose(&scene, job, Batches::DEFAULT, &|| Reference::new(program, frame), &watch);
     let pixels = picture.map_or_else(Vec::new, |(pixels, _)| pixels);
     let flat = |pixel: Radiance<f64>| {
         let ([r, g, b], [tr, tg, tb]) = (pixel.color, pixel.transmittance);

@@ -6,15 +6,19 @@
 
 use crate::{Buffer, Gpu, GpuError, Kernel, groups_for};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_compiler::wgsl;
 
-/// Side of the square tiles in pixels. One dispatch is one tile, short enough for the watchdogs of
-/// desktop drivers and for a prompt answer to cancelling.
+/// Side of the square tiles in pixels. One dispatch is some samples of one tile, short enough for the
+/// watchdogs of desktop drivers and for a prompt answer to cancelling.
 const TILE: u32 = 64;
+
+/// How long a dispatch of several samples should take: much longer than it takes to start one, much
+/// shorter than the seconds after which a driver resets the device.
+const DISPATCH_TIME: Duration = Duration::from_millis(60);
 
 /// Side of a workgroup of the render kernel, see `render.wgsl`.
 const GROUP_SIDE: u32 = 8;
@@ -61,27 +65,55 @@ impl Renderer {
         cancelled: &AtomicBool,
     ) -> Result<Option<(Image, Counts)>, GpuError> {
         let [width, height] = job.size;
-        let words = |tile: [u32; 4]| wgsl::render::frame_words(program, frame, job, tile);
+        let words = |tile, budget| wgsl::render::frame_words(program, frame, job, tile, budget);
         let scene = Shared::upload(gpu, frame)?;
-        let input = gpu.upload(&words([0; 4]))?;
+        let input = gpu.upload(&words([0; 4], 0))?;
         let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
+        let most = job.sampling.most;
         let mut done = 0;
-        for y in (0..height).step_by(TILE as usize) {
-            for x in (0..width).step_by(TILE as usize) {
+        for tile in tiles(job.size) {
+            let [_, _, w, h] = tile;
+            let pixels = u64::from(w) * u64::from(h);
+            let groups = [w.div_ceil(GROUP_SIDE), h.div_ceil(GROUP_SIDE), 1];
+            let mut taken = 0;
+            let mut budget = 1;
+            // Nobody knows what a sample costs here before the first; later ones cost no more, since
+            // pixels only leave.
+            while taken < most {
                 if cancelled.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
-                let (w, h) = (TILE.min(width - x), TILE.min(height - y));
-                gpu.write(&input, &words([x, y, w, h]))?;
-                let groups = [w.div_ceil(GROUP_SIDE), h.div_ceil(GROUP_SIDE), 1];
+                let started = Instant::now();
+                budget = budget.min(most - taken);
+                gpu.write(&input, &words(tile, budget))?;
                 gpu.dispatch(&self.kernel, &scene.with(&input), &output, groups)?;
                 gpu.wait()?;
-                done += u64::from(w) * u64::from(h);
-                progress(done);
+                taken += budget;
+                budget = next_budget(budget, started.elapsed());
+                progress(done + pixels * u64::from(taken) / u64::from(most));
             }
+            done += pixels;
         }
         let words = gpu.read(&output)?;
         Ok(Some((wgsl::render::unpack(width, height, &words), wgsl::render::counts(&words))))
+    }
+}
+
+/// Cuts a picture into tiles `[x, y, width, height]`, rows from the top.
+fn tiles([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 4]> {
+    let edges =
+        |size: u32| (0..size).step_by(TILE as usize).map(move |start| [start, TILE.min(size - start)]);
+    edges(height).flat_map(move |[y, h]| edges(width).map(move |[x, w]| [x, y, w, h]))
+}
+
+/// Samples for the next dispatch after one that took some time. No picture depends on it.
+fn next_budget(budget: u32, elapsed: Duration) -> u32 {
+    if elapsed < DISPATCH_TIME / 2 {
+        budget.saturating_mul(2)
+    } else if elapsed > DISPATCH_TIME {
+        (budget / 2).max(1)
+    } else {
+        budget
     }
 }
 
@@ -138,5 +170,34 @@ impl Shared {
 
     fn with<'a>(&'a self, input: &'a Buffer) -> [&'a Buffer; READ_BUFFERS as usize] {
         [&self.uniforms, &self.curves, &self.permutation, input]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_every_pixel_once() {
+        let [width, height] = [150_u32, 65];
+        let mut count = vec![0; (width * height) as usize];
+        for [x, y, w, h] in tiles([width, height]) {
+            let pixels = (y..y + h).flat_map(|row| (x..x + w).map(move |column| row * width + column));
+            pixels.for_each(|index| count[index as usize] += 1);
+        }
+        assert!(count.iter().all(|&count| count == 1));
+    }
+
+    #[test]
+    fn dispatches_stay_short() {
+        // A device that takes 1 ms, 40 ms or 5 s for a sample of a tile.
+        for (cost, least, most) in [(1, 16, 64), (40, 1, 1), (5000, 1, 1)] {
+            let mut budget = 1;
+            for _ in 0..20 {
+                budget = next_budget(budget, Duration::from_millis(cost) * budget);
+            }
+            assert!((least..=most).contains(&budget), "{cost} ms: {budget}");
+        }
+        assert_eq!(next_budget(u32::MAX, Duration::ZERO), u32::MAX);
     }
 }

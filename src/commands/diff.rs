@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use vol::backend::{Choice, Device};
 use vol::compare::{self, FieldReport, GPU_IMAGE, ImageReport, PRECISION};
 use vol::failure::Failure;
-use vol_compiler::frame::{Frame, Job};
+use vol_compiler::frame::{Frame, Job, Sampling};
 use vol_compiler::program::{Field, Program};
 
 use super::values::Size;
@@ -20,6 +20,10 @@ const REFERENCE_SIDE: u32 = 32;
 
 /// Their samples are this many times farther apart than the pilot's.
 const REFERENCE_COARSENESS: f32 = 4.0;
+
+/// Samples of a pixel at most: enough for an adaptive scene to stop early, and the arithmetic of more
+/// is the same.
+const MAX_SAMPLES: u32 = 25;
 
 /// Error allowed in the compared pictures; both backends use the steps chosen for it.
 const MAX_ERROR: f32 = 1e-2;
@@ -128,13 +132,16 @@ fn compare_pictures(
     };
     let frame = prepared.frame(size)?;
     let choice = vol_runtime_cpu::choose_step(program, &frame, size, MAX_ERROR);
-    let job = Job { size, step: choice.step, shadow_step: choice.shadow_step };
+    let sampling = prepared.session.sampling(&prepared.params, prepared.moment)?;
+    let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
+    let job = Job { size, step: choice.step, shadow_step: choice.shadow_step, sampling };
     let pair = compare::images(&render(cpu, &frame, &job)?, &render(gpu, &frame, &job)?, GPU_IMAGE);
     // Rounding shows with few samples as well as with many, and the reference is slow.
     let small = at_most(size, REFERENCE_SIDE);
     let frame = prepared.frame(small)?;
     let coarse = REFERENCE_COARSENESS;
-    let job = Job { size: small, step: coarse * choice.step, shadow_step: coarse * choice.shadow_step };
+    let (step, shadow_step) = (coarse * choice.step, coarse * choice.shadow_step);
+    let job = Job { size: small, step, shadow_step, sampling };
     let reference = compare::reference_picture(program, &frame, &job);
     let against =
         |device| Ok::<_, Failure>(compare::images(&render(device, &frame, &job)?, &reference, PRECISION));

@@ -7,7 +7,7 @@ use vol::backend::{Choice, Device, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
-use vol_compiler::frame::{Counts, Job};
+use vol_compiler::frame::{Counts, Job, Sampling};
 
 use super::progress::Progress;
 use super::stats::{Phases, Stats, timed};
@@ -74,6 +74,9 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         step: None,
         shadow_step: None,
         estimate: 0.0,
+        samples_per_pixel: 0,
+        adaptive: None,
+        mean_samples_per_pixel: 0.0,
         counts: Counts::default(),
         milliseconds: Phases {
             check: session.check_time,
@@ -95,7 +98,7 @@ fn render(
     let pixels = stats.size.map(u64::from).iter().product();
     let renderer = timed(&mut stats.milliseconds.prepare, || device.prepare(&session.program))?;
     let mut pictures =
-        Pictures { prepared, renderer, pixels, progress: Progress::new(pixels * frames), stats };
+        Pictures { arguments, prepared, renderer, pixels, progress: Progress::new(pixels * frames), stats };
     let Some(FrameRange { first, last }) = arguments.frames else {
         return pictures.render(*moment, &arguments.output);
     };
@@ -106,8 +109,17 @@ fn render(
     Ok(())
 }
 
+/// The scene's sampling, or what the arguments say instead.
+fn sampling(arguments: &cli::Render, of_scene: Sampling) -> Sampling {
+    Sampling {
+        most: arguments.samples.unwrap_or(of_scene.most),
+        tolerance: arguments.adaptive.unwrap_or(of_scene.tolerance),
+    }
+}
+
 /// What the pictures of one run have in common.
 struct Pictures<'a> {
+    arguments: &'a cli::Render,
     prepared: &'a Prepared,
     renderer: Renderer<'a>,
     /// Of one picture.
@@ -122,6 +134,7 @@ impl Pictures<'_> {
         super::stop_if_cancelled()?;
         let Prepared { session, params, .. } = self.prepared;
         let Stats { size, max_error, frames, milliseconds: phases, .. } = &mut *self.stats;
+        let sampling = sampling(self.arguments, session.sampling(params, moment)?);
         let frame = session.frame(params, moment, *size)?;
         // Choose the distance between samples from a few rays.
         let choice = timed(&mut phases.pilot, || {
@@ -129,14 +142,14 @@ impl Pictures<'_> {
         });
         super::stop_if_cancelled()?;
         // Compute the picture.
-        let job = Job { size: *size, step: choice.step, shadow_step: choice.shadow_step };
+        let job = Job { size: *size, step: choice.step, shadow_step: choice.shadow_step, sampling };
         let before = self.pixels * *frames;
         let progress = |done| self.progress.at(before + done);
         let rendered =
             timed(&mut phases.render, || self.renderer.render(&frame, &job, &progress, &CANCELLED))?;
         super::stop_if_cancelled()?;
         timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
-        self.stats.add(&choice, rendered.counts);
+        self.stats.add(&choice, sampling, rendered.counts);
         Ok(())
     }
 }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
-use vol_compiler::frame::Counts;
+use vol_compiler::frame::{Counts, Sampling};
 use vol_runtime_cpu::StepChoice;
 
 /// The file's content; of several frames, sums and the worst.
@@ -29,6 +29,12 @@ pub(super) struct Stats {
     pub(super) shadow_step: Option<f32>,
     /// Estimated error; the largest of all frames.
     pub(super) estimate: f32,
+    /// Samples of a pixel asked for, or the most; the largest of all frames.
+    pub(super) samples_per_pixel: u32,
+    /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.
+    pub(super) adaptive: Option<f32>,
+    /// Samples taken per pixel.
+    pub(super) mean_samples_per_pixel: f64,
     /// Sums over all frames.
     #[serde(flatten, serialize_with = "counts")]
     pub(super) counts: Counts,
@@ -37,13 +43,17 @@ pub(super) struct Stats {
 
 impl Stats {
     /// Adds one picture.
-    pub(super) fn add(&mut self, choice: &StepChoice, counts: Counts) {
+    pub(super) fn add(&mut self, choice: &StepChoice, sampling: Sampling, counts: Counts) {
         let smaller = |step: Option<f32>, other: f32| Some(step.map_or(other, |step| step.min(other)));
         self.step = smaller(self.step, choice.step);
         self.shadow_step = smaller(self.shadow_step, choice.shadow_step);
         self.estimate = self.estimate.max(choice.estimate);
+        self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);
+        self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);
         self.frames += 1;
+        let pixels = f64::from(self.size[0]) * f64::from(self.size[1]) * self.frames as f64;
+        self.mean_samples_per_pixel = self.counts.camera_rays as f64 / pixels;
     }
 }
 
@@ -71,7 +81,8 @@ pub(super) struct Phases {
 }
 
 fn counts<S: Serializer>(counts: &Counts, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(3))?;
+    let mut map = serializer.serialize_map(Some(4))?;
+    map.serialize_entry("camera_rays", &counts.camera_rays)?;
     map.serialize_entry("rays", &counts.rays)?;
     map.serialize_entry("samples", &counts.samples)?;
     map.serialize_entry("evaluations", &counts.evaluations)?;

@@ -1,5 +1,7 @@
 //! Argument values: from the text typed to numbers in range, or a sentence that says what is wrong.
 
+use vol_language::blocks::MAX_SAMPLES;
+
 /// Largest width and height of a picture.
 const MAX_SIZE: u32 = 16_384;
 
@@ -72,6 +74,22 @@ pub(crate) fn max_error(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A whole number of samples per pixel.
+pub(crate) fn samples(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(samples @ 1..=MAX_SAMPLES) => Ok(samples),
+        _ => Err(format!("must be a whole number from 1 to {MAX_SAMPLES}")),
+    }
+}
+
+/// A number from 0 to below 1.
+pub(crate) fn adaptive(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(error) if (0.0..1.0).contains(&error) => Ok(error),
+        _ => Err("must be a number from 0 to below 1".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,6 +136,21 @@ mod tests {
         assert_eq!(max_error("1e-3"), Ok(1e-3));
         for bad in ["0", "1", "-1", "nan", "x"] {
             assert!(max_error(bad).is_err(), "{bad}");
+        }
+    }
+    #[test]
+    fn samples_are_whole() {
+        assert_eq!((samples("1"), samples("4096")), (Ok(1), Ok(4096)));
+        for bad in ["", "0", "-1", "4097", "1.5", "nan", "x", "99999999999"] {
+            assert!(samples(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn adaptive_errors_are_below_1() {
+        assert_eq!((adaptive("0"), adaptive("0.02")), (Ok(0.0), Ok(0.02)));
+        for bad in ["", "1", "-0.1", "nan", "inf", "x"] {
+            assert!(adaptive(bad).is_err(), "{bad}");
         }
     }
 }

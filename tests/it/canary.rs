@@ -4,7 +4,7 @@ use crate::support::{Random, compile, ensure, examples, frame, point, render};
 use libtest_mimic::{Failed, Trial};
 use vol::compare;
 use vol_compiler::error_bound::Bounded;
-use vol_compiler::frame::{Image, Job};
+use vol_compiler::frame::{Image, Job, Sampling};
 use vol_compiler::ir::{Inst, Number};
 
 /// The trials of this file.
@@ -70,7 +70,12 @@ fn field_sees_nan() -> Result<(), Failed> {
 fn ball_picture() -> Result<Image, Failed> {
     let program = compile("ball.vol", BALL)?;
     let frame = frame(&program, 0.0, [24, 24])?;
-    render(&program, &frame, &Job { size: [24, 24], step: 1.0, shadow_step: 1.0 }, 1)
+    render(
+        &program,
+        &frame,
+        &Job { size: [24, 24], step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE },
+        1,
+    )
 }
 
 /// Planted in the middle of the ball, not on its outline.

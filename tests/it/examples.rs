@@ -5,7 +5,7 @@ use crate::support::{compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::compare;
-use vol_compiler::frame::{Image, Job};
+use vol_compiler::frame::{Image, Job, Sampling};
 
 /// A small picture.
 const SIZE: [u32; 2] = [48, 27];
@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [48, 27];
 const REFERENCE_SIZE: [u32; 2] = [16, 9];
 
 /// A coarse comb: agreement does not need accuracy.
-const JOB: Job = Job { size: SIZE, step: 0.05, shadow_step: 0.1 };
+const JOB: Job = Job { size: SIZE, step: 0.05, shadow_step: 0.1, sampling: Sampling::CENTRE };
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {

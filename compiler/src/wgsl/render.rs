@@ -20,8 +20,11 @@
 //! | 17 | `AT_UP` | to the upper edge at distance 1, xyz |
 //! | 20 | `AT_BACKGROUND` | rgb |
 //! | 23 | `AT_LIGHT_COUNT` | number of lights |
-//! | 24 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
-//! | 24 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
+//! | 24 | `AT_SAMPLES` | samples of a pixel, or the most |
+//! | 25 | `AT_TOLERANCE` | error at which a pixel takes no more of them, 0 for as many everywhere |
+//! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
+//! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
+//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 8 words per light of the frame: distant, position or direction xyz, color rgb, shadows |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
@@ -35,8 +38,9 @@ use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
-const INTEGRATOR: [&str; 7] = [
+const INTEGRATOR: [&str; 8] = [
     include_str!("render.wgsl"),
+    include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
     include_str!("render/surface.wgsl"),
     include_str!("render/shade.wgsl"),
@@ -46,7 +50,7 @@ const INTEGRATOR: [&str; 7] = [
 ];
 
 /// Words before the objects.
-const HEADER_WORDS: usize = 24;
+const HEADER_WORDS: usize = 27;
 
 /// Words of an object and of a light.
 const RECORD_WORDS: usize = 8;
@@ -58,7 +62,7 @@ const MEDIUM_WORDS: usize = 9;
 const CELL_WORDS: usize = 6;
 
 /// Words of `vol_output` per pixel.
-pub const PIXEL_WORDS: usize = 10;
+pub const PIXEL_WORDS: usize = 13;
 
 /// Depth that stands for "no surface"; the shader writes 1e30.
 const NO_DEPTH: f32 = 1e29;
@@ -67,7 +71,7 @@ const NO_DEPTH: f32 = 1e29;
 const INFINITE: f32 = 1e6;
 
 /// Places in the header, in words.
-const HEADER: [(&str, usize); 10] = [
+const HEADER: [(&str, usize); 13] = [
     ("AT_TILE", 0),
     ("AT_SIZE", 4),
     ("AT_STEP", 6),
@@ -78,6 +82,9 @@ const HEADER: [(&str, usize); 10] = [
     ("AT_UP", 17),
     ("AT_BACKGROUND", 20),
     ("AT_LIGHT_COUNT", 23),
+    ("AT_SAMPLES", 24),
+    ("AT_TOLERANCE", 25),
+    ("AT_BUDGET", 26),
 ];
 
 const BINDINGS: &str = "\
@@ -88,9 +95,11 @@ const BINDINGS: &str = "\
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_input        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_output       f32: 10 words per pixel of the whole picture, rows from the top:
-//                      radiance rgb, transmittance rgb, depth (1e30: none), and how much was
-//                      computed: rays, samples of media, evaluations
+//   4 vol_output       u32: 13 words per pixel of the whole picture, rows from the top, 0 before
+//                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
+//                      none); whole numbers, how much was computed: rays, samples of media,
+//                      evaluations, samples of the pixel; bits of f32: spread of the radiance and of
+//                      the transmittance
 ";
 
 /// The complete shader of a program.
@@ -121,6 +130,7 @@ fn glue(program: &Program) -> String {
         ("MEDIUM_WORDS", MEDIUM_WORDS),
         ("CELL_WORDS", CELL_WORDS),
         ("LIGHT_WORDS", RECORD_WORDS),
+        ("PIXEL_WORDS", PIXEL_WORDS),
         ("AT_OBJECTS", HEADER_WORDS),
         ("AT_MEDIA", media_at),
         ("AT_LIGHTS", media_at + MEDIUM_WORDS * media),
@@ -280,9 +290,10 @@ fn wider(bounds: &Aabb, by: f32) -> Aabb {
 }
 
 /// The contents of `vol_input`: a frame, a job, and the part of the picture to render
-/// (`[x, y, width, height]` in pixels), laid out as the module's documentation says.
+/// (`[x, y, width, height]` in pixels) with at most `budget` more samples for each of its pixels, laid
+/// out as the module's documentation says.
 #[must_use]
-pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4]) -> Vec<u32> {
+pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], budget: u32) -> Vec<u32> {
     let mut words = Vec::new();
     words.extend(tile.map(|x| x as f32));
     words.extend(job.size.map(|x| x as f32));
@@ -290,6 +301,7 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4]) 
     let camera = &frame.camera;
     words.extend([camera.origin, camera.forward, camera.right, camera.up, frame.background].concat());
     words.push(frame.lights.len() as f32);
+    words.extend([job.sampling.most as f32, job.sampling.tolerance, budget as f32]);
     // Records of all objects and media of the program; those that are not in the frame stay 0.
     let mut objects = vec![[0.0; RECORD_WORDS]; program.objects.len()];
     for object in &frame.objects {
@@ -359,10 +371,8 @@ pub fn unpack(width: u32, height: u32, words: &[u32]) -> Image {
 pub fn counts(words: &[u32]) -> Counts {
     let mut counts = Counts::default();
     for pixel in words.chunks_exact(PIXEL_WORDS) {
-        let [rays, samples, evaluations] = [7, 8, 9].map(|index| f32::from_bits(pixel[index]) as u64);
-        counts.rays += rays;
-        counts.samples += samples;
-        counts.evaluations += evaluations;
+        let [rays, samples, evaluations, camera_rays] = [7, 8, 9, 10].map(|index| u64::from(pixel[index]));
+        counts = counts.plus(Counts { camera_rays, rays, samples, evaluations });
     }
     counts
 }

@@ -1,12 +1,13 @@
 // The integrator: what a picture means. Twin of runtime-cpu/src/render, with the same file names,
-// function names and step comments. One invocation computes one pixel.
+// function names and step comments. One invocation computes samples of
+// one pixel.
 //
 // Written before this text, per program: how many objects and media there are, the places AT_… of
 // the words of vol_input, and the functions object_… and medium_… that pick the function of one of
 // them. Every value stays finite; skipped parts add exactly 0.
 
 @group(0) @binding(3) var<storage, read> vol_input: array<f32>;
-@group(0) @binding(4) var<storage, read_write> vol_output: array<f32>;
+@group(0) @binding(4) var<storage, read_write> vol_output: array<u32>;
 
 const FAR: f32 = 4.0e6;
 const PARALLEL: f32 = 1e-12;
@@ -89,7 +90,19 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
     }
     let column = tile.x + id.x;
     let row = tile.y + id.y;
-    let ray = camera_ray(vec2f(f32(column) + 0.5, f32(row) + 0.5));
+    let index = (row * u32(vol_input[AT_SIZE])) + column;
+    // Go on with the pixel where the dispatch before stopped.
+    var mean = read_pixel(index);
+    let last = min(mean.count + u32(vol_input[AT_BUDGET]), u32(vol_input[AT_SAMPLES]));
+    while ((mean.count < last) && !is_done(mean)) {
+        let place = vec2f(f32(column), f32(row)) + place_in_pixel(mean.count);
+        mean = add_sample(mean, radiance(camera_ray(place)));
+    }
+    write_pixel(index, mean);
+}
+
+// Follows a camera ray.
+fn radiance(ray: Ray) -> Radiance {
     counted_rays += 1u;
     // Find what is behind the media: surfaces, else the background.
     let contact = trace(ray);
@@ -104,20 +117,40 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
     // Look at it through the media.
     let glow = march(ray, end);
     let color = glow.light + (glow.transmittance * behind);
-    let transmittance = select(glow.transmittance, vec3f(0.0), contact.hit);
-    write_pixel((row * u32(vol_input[AT_SIZE])) + column, color, transmittance, depth);
+    return Radiance(color, select(glow.transmittance, vec3f(0.0), contact.hit), depth);
 }
 
-fn write_pixel(index: u32, color: vec3f, transmittance: vec3f, depth: f32) {
-    let at = 10u * index;
-    vol_output[at] = color.x;
-    vol_output[at + 1u] = color.y;
-    vol_output[at + 2u] = color.z;
-    vol_output[at + 3u] = transmittance.x;
-    vol_output[at + 4u] = transmittance.y;
-    vol_output[at + 5u] = transmittance.z;
-    vol_output[at + 6u] = depth;
-    vol_output[at + 7u] = f32(counted_rays);
-    vol_output[at + 8u] = f32(counted_samples);
-    vol_output[at + 9u] = f32(counted_evaluations);
+fn read_pixel(index: u32) -> Mean {
+    let at = PIXEL_WORDS * index;
+    return Mean(
+        vol_output[at + 10u],
+        vec3f(output_float(at), output_float(at + 1u), output_float(at + 2u)),
+        vec3f(output_float(at + 3u), output_float(at + 4u), output_float(at + 5u)),
+        output_float(at + 6u),
+        output_float(at + 11u),
+        output_float(at + 12u),
+    );
+}
+
+fn output_float(at: u32) -> f32 {
+    return bitcast<f32>(vol_output[at]);
+}
+
+// Counts of dispatches are added up in whole numbers: with many samples they leave the 24 bits of a
+// float.
+fn write_pixel(index: u32, mean: Mean) {
+    let at = PIXEL_WORDS * index;
+    vol_output[at] = bitcast<u32>(mean.color.x);
+    vol_output[at + 1u] = bitcast<u32>(mean.color.y);
+    vol_output[at + 2u] = bitcast<u32>(mean.color.z);
+    vol_output[at + 3u] = bitcast<u32>(mean.transmittance.x);
+    vol_output[at + 4u] = bitcast<u32>(mean.transmittance.y);
+    vol_output[at + 5u] = bitcast<u32>(mean.transmittance.z);
+    vol_output[at + 6u] = bitcast<u32>(mean.depth);
+    vol_output[at + 7u] += counted_rays;
+    vol_output[at + 8u] += counted_samples;
+    vol_output[at + 9u] += counted_evaluations;
+    vol_output[at + 10u] = mean.count;
+    vol_output[at + 11u] = bitcast<u32>(mean.color_spread);
+    vol_output[at + 12u] = bitcast<u32>(mean.transmittance_spread);
 }

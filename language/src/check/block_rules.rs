@@ -4,7 +4,7 @@
 
 use super::Checker;
 use super::constant::{Constant, is_zero};
-use crate::blocks::BlockKind;
+use crate::blocks::{BlockKind, MAX_SAMPLES};
 use crate::diag::Diagnostic;
 use crate::hir::{Block, ExprId};
 use std::f64::consts::PI;
@@ -29,6 +29,7 @@ impl Checker<'_> {
                 self.check_size(block);
                 self.check_timing(block, "duration", "at least 0", |value| value >= 0.0);
                 self.check_timing(block, "fps", "more than 0", |value| value > 0.0);
+                self.check_sampling(block);
             }
         }
     }
@@ -116,6 +117,32 @@ impl Checker<'_> {
             let message = format!("`{key}` must be {range}");
             let error = Diagnostic::error("E0314", message, self.span(value), format!("this is {number}"));
             let example = if key == "fps" { "fps: 30" } else { "duration: 10s" };
+            self.report(error.with_help(format!("write `{example}`")));
+        }
+    }
+    /// Values that depend on params or time are checked when their picture is asked for.
+    fn check_sampling(&mut self, block: &Block) {
+        let samples = |value: f64| value.fract() == 0.0 && (1.0..=f64::from(MAX_SAMPLES)).contains(&value);
+        let range = format!("a whole number from 1 to {MAX_SAMPLES}");
+        self.check_sampling_key(block, "samples", &range, "samples: 16", samples);
+        let adaptive = |value: f64| (0.0..1.0).contains(&value);
+        let range = "at least 0 and less than 1";
+        self.check_sampling_key(block, "adaptive", range, "adaptive: 0.02", adaptive);
+    }
+
+    fn check_sampling_key(
+        &mut self,
+        block: &Block,
+        key: &'static str,
+        range: &str,
+        example: &str,
+        fits: impl Fn(f64) -> bool,
+    ) {
+        if let Some((value, [number, ..])) = self.entry_constant(block, key)
+            && !fits(number)
+        {
+            let message = format!("`{key}` must be {range}");
+            let error = Diagnostic::error("E0319", message, self.span(value), format!("this is {number}"));
             self.report(error.with_help(format!("write `{example}`")));
         }
     }

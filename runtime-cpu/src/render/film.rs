@@ -1,20 +1,22 @@
 //! From rays to a picture: tiles, threads, pixels.
 //!
-//! Every pixel is computed from its own ray alone, so tiles may be done in any order, by any
+//! Every pixel is computed from its own rays alone, so tiles may be done in any order, by any
 //! number of threads.
 
 use super::Stats;
-use super::camera::{FAR, Ray, camera_ray, depth};
+use super::camera::{FAR, Ray, depth};
 use super::fields::Fields;
+use super::sampling::Mean;
 use super::scene::{Batches, Integrator, Scene};
 use crate::real::{Real, Vec3, add, mul, splat};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use vol_compiler::frame::Job;
 
 /// Width and height of a tile in pixels; a tile is one unit of work.
 const TILE: u32 = 16;
 
-/// What a camera ray brings back.
+/// What a camera ray brings back, or the mean of several.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Radiance<R> {
     /// Radiance, background included.
@@ -85,7 +87,7 @@ pub(crate) struct Watch<'a> {
 /// Renders a picture; `fields` makes an evaluator for a thread. Nothing if cancelled.
 pub(crate) fn expose<F: Fields>(
     scene: &Scene<F::Real>,
-    size: [u32; 2],
+    job: &Job,
     batches: Batches,
     fields: &(dyn Fn() -> F + Sync),
     watch: &Watch<'_>,
@@ -95,17 +97,16 @@ pub(crate) fn expose<F: Fields>(
         if watch.cancelled.load(Ordering::Relaxed) {
             return None;
         }
-        let half = F::Real::from_f32(0.5);
-        let centre = |pixel: [u32; 2]| pixel.map(|index| F::Real::from_index(index as i32) + half);
-        let rays: Vec<_> = tile.pixels().map(|pixel| camera_ray(scene, centre(pixel))).collect();
         let mut integrator = Integrator::new(scene, fields(), batches);
-        let pixels = integrator.radiance(&rays);
+        let pixels: Vec<_> = tile.pixels().collect();
+        let means = integrator.sample_pixels(&pixels, &job.sampling, watch.cancelled)?;
+        let pixels: Vec<_> = means.iter().map(Mean::radiance).collect();
         let before = done.fetch_add(pixels.len() as u64, Ordering::Relaxed);
         (watch.progress)(before + pixels.len() as u64);
         Some((tile, pixels, integrator.stats))
     };
-    let finished: Option<Vec<_>> = tiles(size).into_par_iter().map(render).collect();
-    Some(assemble(size, finished?))
+    let finished: Option<Vec<_>> = tiles(job.size).into_par_iter().map(render).collect();
+    Some(assemble(job.size, finished?))
 }
 
 /// Cuts a picture into tiles, rows from the top.

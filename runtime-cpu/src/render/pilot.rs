@@ -17,7 +17,7 @@ use super::scene::{Batches, Integrator, Scene};
 use crate::interp::Tapes;
 use crate::math::fun::{exp2, log2};
 use rayon::prelude::*;
-use vol_compiler::frame::{Aabb, Frame, Job};
+use vol_compiler::frame::{Aabb, Frame, Job, Sampling};
 use vol_compiler::program::Program;
 
 /// Rays of the pilot.
@@ -76,7 +76,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     }
     let tapes = Tapes::new(program);
     let expose = |step: f32| {
-        let job = Job { size, step, shadow_step: SHADOW_RATIO * step };
+        let job = Job { size, step, shadow_step: SHADOW_RATIO * step, sampling: Sampling::CENTRE };
         let scene = Scene::<f32>::new(frame, &job);
         expose(&scene, || Batch::new(&tapes, frame))
     };

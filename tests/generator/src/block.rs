@@ -131,6 +131,8 @@ impl Generator<'_> {
                 "size" => format!("size: ({}, {})", 1 + self.source.below(64), 1 + self.source.below(64)),
                 "duration" => format!("duration: {}", self.seconds_literal().text),
                 "fps" => format!("fps: {}", 1 + self.source.below(60)),
+                "samples" => format!("samples: {}", 1 + self.source.below(20)),
+                "adaptive" => format!("adaptive: 0.{}", self.source.below(100)),
                 _ => self.free_entry(&key),
             });
         }

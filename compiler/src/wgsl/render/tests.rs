@@ -1,5 +1,5 @@
 use super::*;
-use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Stride};
+use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Sampling, Stride};
 use crate::ir::text;
 use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
 use vol_language::source::Span;
@@ -46,7 +46,14 @@ fn program(objects: usize, media: usize) -> Program {
         media: vec![medium; media],
         lights: Vec::new(),
         camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
-        render: Render { size: [4, 4], background: [NOWHERE; 3], duration: NOWHERE, fps: NOWHERE },
+        render: Render {
+            size: [4, 4],
+            background: [NOWHERE; 3],
+            samples: NOWHERE,
+            adaptive: NOWHERE,
+            duration: NOWHERE,
+            fps: NOWHERE,
+        },
         fields: Vec::new(),
         report: Vec::new(),
     }
@@ -102,17 +109,19 @@ fn modules_are_accepted() {
 #[test]
 fn words_stand_where_the_shader_looks() {
     let program = program(2, 1);
-    let job = Job { size: [40, 30], step: 0.1, shadow_step: 0.2 };
-    let words = frame_words(&program, &frame(&program), &job, [8, 16, 24, 32]);
+    let job =
+        Job { size: [40, 30], step: 0.1, shadow_step: 0.2, sampling: Sampling { most: 33, tolerance: 0.25 } };
+    let words = frame_words(&program, &frame(&program), &job, [8, 16, 24, 32], 5);
     let words: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
     assert_eq!(words[..8], [8.0, 16.0, 24.0, 32.0, 40.0, 30.0, 0.1, 0.2]);
     assert_eq!(words[8..24], [1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15., 1.]);
+    assert_eq!(words[24..27], [33.0, 0.25, 5.0]);
     let text = glue(&program);
     let place = |name: &str| -> usize {
         let line = text.lines().find_map(|line| line.strip_prefix(&format!("const {name}: u32 = ")));
         line.and_then(|line| line.strip_suffix("u;")?.parse().ok()).expect("a constant of the glue")
     };
-    assert_eq!(place("AT_OBJECTS"), 24);
+    assert_eq!(place("AT_OBJECTS"), 27);
     let (objects, media, lights) = (place("AT_OBJECTS"), place("AT_MEDIA"), place("AT_LIGHTS"));
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
@@ -147,12 +156,14 @@ fn cells_are_used_if_they_say_more_than_the_box() {
 
 #[test]
 fn depth_without_a_surface_is_infinite() {
-    let first = [1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30, 1.0, 2.0, 3.0_f32];
-    let second = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 4.0, 5.0, 6.0];
-    let words = [first, second].concat();
-    let words: Vec<u32> = words.into_iter().map(f32::to_bits).collect();
+    let first = ([1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30_f32], [1, 2, 3, 1]);
+    let second = ([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], [4, 5, 4_000_000_000, 2]);
+    let spreads = [0.5_f32.to_bits(); 2];
+    let words = [first, second]
+        .map(|(floats, counts)| [&floats.map(f32::to_bits)[..], &counts[..], &spreads[..]].concat())
+        .concat();
     let image = unpack(2, 1, &words);
-    assert_eq!(counts(&words), Counts { rays: 5, samples: 7, evaluations: 9 });
+    assert_eq!(counts(&words), Counts { camera_rays: 3, rays: 5, samples: 7, evaluations: 4_000_000_003 });
     assert_eq!(image.pixels[0].depth, f32::INFINITY);
     assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
     assert_eq!(image.pixels[1].depth, 7.0);

@@ -50,7 +50,7 @@ fn unknown_key() {
     let source = "medium m { region: sphere(1), densty: 1 }";
     assert_eq!(block_errors(source), ["E0302 `densty`: no such key"]);
     assert_eq!(help(source), "did you mean `density`");
-    let keys = "the keys are `size`, `background`, `ambient`, `duration`, `fps`";
+    let keys = "the keys are `size`, `background`, `ambient`, `samples`, `adaptive`, `duration`, `fps`";
     assert_eq!(help("render { zzzz: 1 }"), keys);
 }
 
@@ -148,6 +148,24 @@ fn nothing_to_draw() {
 fn timing_is_positive() {
     assert_eq!(block_errors("render { fps: 0 }"), ["E0314 `0`: this is 0"]);
     assert_eq!(block_errors("render { duration: -1 }"), ["E0314 `-1`: this is -1"]);
+}
+
+#[test]
+fn sampling_is_in_range() {
+    for (value, label) in [("0", "0"), ("-3", "-3"), ("4097", "4097"), ("2 * 0", "0")] {
+        let source = format!("render {{ samples: {value} }}");
+        assert_eq!(block_errors(&source), [format!("E0319 `{value}`: this is {label}")]);
+    }
+    for (value, label) in [("-0.01", "-0.01"), ("1", "1"), ("2.5", "2.5")] {
+        let source = format!("render {{ adaptive: {value} }}");
+        assert_eq!(block_errors(&source), [format!("E0319 `{value}`: this is {label}")]);
+    }
+    assert_eq!(help("render { samples: 0 }"), "write `samples: 16`");
+    for fine in ["samples: 1", "samples: 4096, adaptive: 0", "adaptive: 0.999", "samples: 16, adaptive: time"]
+    {
+        assert_eq!(block_errors(&format!("render {{ {fine} }}")), [""; 0], "{fine}");
+    }
+    assert_eq!(block_errors("render { samples: 1.5 }").len(), 1);
 }
 
 #[test]

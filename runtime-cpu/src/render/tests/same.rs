@@ -3,9 +3,9 @@
 use super::super::{Batches, camera, choose_step, comb, medium, render, render_reference, shadow, surface};
 use super::support::{World, bits, mixed};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use vol_compiler::frame::{Image, Job};
+use vol_compiler::frame::{Image, Job, Sampling};
 
-const JOB: Job = Job { size: [37, 21], step: 0.11, shadow_step: 0.2 };
+const JOB: Job = Job { size: [37, 21], step: 0.11, shadow_step: 0.2, sampling: Sampling::CENTRE };
 
 fn with_threads(world: &World, job: &Job, threads: usize) -> Image {
     let idle = AtomicBool::new(false);
@@ -96,7 +96,8 @@ fn pilot_meets_its_target() {
     assert_eq!(tight, choose_step(program, frame, size, 1e-3));
     // Halving further changes the picture by less than the estimate promises.
     let colors = |step| {
-        let image = with_threads(&world, &Job { size, step, shadow_step: 2.0 * step }, 2);
+        let image =
+            with_threads(&world, &Job { size, step, shadow_step: 2.0 * step, sampling: Sampling::CENTRE }, 2);
         image.pixels.iter().flat_map(|pixel| pixel.color).map(f64::from).collect::<Vec<_>>()
     };
     let (coarse, fine) = (colors(tight.step), colors(0.25 * tight.step));

@@ -3,7 +3,7 @@
 use super::super::{Batches, Stats, Watch, render_batches};
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{
-    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Stride,
+    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Sampling, Stride,
 };
 use vol_compiler::ir::{Function, FunctionId, Inst, Module, Number, ValueId};
 use vol_compiler::ops::Op;
@@ -160,7 +160,14 @@ impl World {
             media: Vec::new(),
             lights: Vec::new(),
             camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
-            render: Render { size: [16, 16], background: [NOWHERE; 3], duration: NOWHERE, fps: NOWHERE },
+            render: Render {
+                size: [16, 16],
+                background: [NOWHERE; 3],
+                samples: NOWHERE,
+                adaptive: NOWHERE,
+                duration: NOWHERE,
+                fps: NOWHERE,
+            },
             fields: Vec::new(),
             report: Vec::new(),
         };
@@ -257,13 +264,16 @@ impl World {
 
     /// Renders a square picture.
     pub(super) fn render(&self, size: u32, step: f32) -> Image {
-        self.render_with(&Job { size: [size, size], step, shadow_step: step }, Batches::DEFAULT)
+        self.render_with(
+            &Job { size: [size, size], step, shadow_step: step, sampling: Sampling::CENTRE },
+            Batches::DEFAULT,
+        )
     }
 
     /// Renders a square picture and counts.
     pub(super) fn render_counted(&self, size: u32, step: f32) -> (Image, Stats) {
         let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
-        let job = Job { size: [size, size], step, shadow_step: step };
+        let job = Job { size: [size, size], step, shadow_step: step, sampling: Sampling::CENTRE };
         render_batches(&self.program, &self.frame, &job, Batches::DEFAULT, &watch).expect("not cancelled")
     }
 

@@ -1,0 +1,73 @@
+// The samples of a pixel: where they are, their mean, and when there are enough of them.
+// Twin: runtime-cpu/src/render/sampling.rs, which says why.
+
+const STRIDE: vec2u = vec2u(3242174889u, 2447445414u);
+const FIRST_ROUND: u32 = 9u;
+const ROUND: u32 = 8u;
+const LEAST_BRIGHTNESS: f32 = 0.0625;
+
+// What a camera ray brings back; depth NO_DEPTH without a surface.
+struct Radiance {
+    color: vec3f,
+    transmittance: vec3f,
+    depth: f32,
+}
+
+struct Mean {
+    count: u32,
+    color: vec3f,
+    transmittance: vec3f,
+    depth: f32,
+    color_spread: f32,
+    transmittance_spread: f32,
+}
+
+fn place_in_pixel(index: u32) -> vec2f {
+    let step = (index + 1u) / 2u;
+    let signed = select(0u - step, step, (index % 2u) == 1u);
+    let place = ((vec2u(signed) * STRIDE) + vec2u(0x80000000u)) >> vec2u(16u);
+    return vec2f(place) * (1.0f / 65536.0f);
+}
+
+// Takes one more sample into the mean.
+fn add_sample(old: Mean, sample: Radiance) -> Mean {
+    var mean = old;
+    mean.count += 1u;
+    // The first is the mean, bit for bit.
+    if (mean.count == 1u) {
+        mean.color = sample.color;
+        mean.transmittance = sample.transmittance;
+        mean.depth = sample.depth;
+        return mean;
+    }
+    let share = 1.0 / f32(mean.count);
+    let color = sample.color - mean.color;
+    mean.color = mean.color + (color * share);
+    mean.color_spread = mean.color_spread + dot3(color, sample.color - mean.color);
+    let transmittance = sample.transmittance - mean.transmittance;
+    mean.transmittance = mean.transmittance + (transmittance * share);
+    let from_new = sample.transmittance - mean.transmittance;
+    mean.transmittance_spread = mean.transmittance_spread + dot3(transmittance, from_new);
+    return mean;
+}
+
+// Whether the pixel takes no more samples.
+fn is_done(mean: Mean) -> bool {
+    if (mean.count >= u32(vol_input[AT_SAMPLES])) {
+        return true;
+    }
+    let tested = (mean.count >= FIRST_ROUND) && (((mean.count - FIRST_ROUND) % ROUND) == 0u);
+    let tolerance = vol_input[AT_TOLERANCE];
+    return tested && (tolerance > 0.0) && is_within(mean, tolerance);
+}
+
+// Whether the standard errors, rms over the channels, are within a tolerance.
+fn is_within(mean: Mean, tolerance: f32) -> bool {
+    // Three channels; spread / (n (n - 1)) is the squared error of the mean.
+    let count = f32(mean.count);
+    let least = (3.0 * LEAST_BRIGHTNESS) * LEAST_BRIGHTNESS;
+    let scaled = (tolerance * tolerance) * (count * (count - 1.0));
+    let color = scaled * max(dot3(mean.color, mean.color), least);
+    let transmittance = scaled * 3.0;
+    return (mean.color_spread <= color) && (mean.transmittance_spread <= transmittance);
+}

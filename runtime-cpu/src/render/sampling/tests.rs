@@ -1,0 +1,3 @@
+//! The pattern, edges against their exact area, and what adaptive sampling promises.
+
+use super::*;

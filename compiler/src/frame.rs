@@ -145,7 +145,7 @@ pub struct Job {
 /// in `runtime-cpu/src/render/sampling.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
-    /// Samples of each pixel; the most, if there is a tolerance. 1 to
+    /// Samples of each pixel; the most, if there is a tolerance, beside which four probes may be taken. 1 to
     /// [`MAX_SAMPLES`](vol_language::blocks::MAX_SAMPLES); 1 is the pixel's centre.
     pub most: u32,
     /// Standard error of a pixel relative to its brightness at which it takes no more samples, in
@@ -191,7 +191,7 @@ pub struct Pixel {
 /// How much was computed for a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Camera rays: samples of pixels.
+    /// Camera rays: samples of pixels, and the probes of adaptive sampling.
     pub camera_rays: u64,
     /// Camera and shadow rays.
     pub rays: u64,

@@ -42,7 +42,7 @@ use vol_compiler::program::Program;
 /// What a render did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Camera rays.
+    /// Camera rays: samples of pixels, and the probes of adaptive sampling.
     pub rays: u64,
     /// Rays towards lights.
     pub shadow_rays: u64,

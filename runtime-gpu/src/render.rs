@@ -78,7 +78,7 @@ impl Renderer {
             let mut taken = 0;
             let mut budget = 1;
             // Nobody knows what a sample costs here before the first; later ones cost no more, since
-            // pixels only leave.
+            // pixels only leave, but one of adaptive sampling that comes with four probes.
             while taken < most {
                 if cancelled.load(Ordering::Relaxed) {
                     return Ok(None);

@@ -33,7 +33,7 @@ pub(super) struct Stats {
     pub(super) samples_per_pixel: u32,
     /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.
     pub(super) adaptive: Option<f32>,
-    /// Samples taken per pixel.
+    /// Camera rays per pixel: samples taken, and the probes of adaptive sampling.
     pub(super) mean_samples_per_pixel: f64,
     /// Sums over all frames.
     #[serde(flatten, serialize_with = "counts")]

@@ -21,6 +21,7 @@ mod noises;
 mod physics;
 mod primitives;
 mod properties;
+mod sampling;
 mod shapes;
 mod solid;
 mod spec;
@@ -48,6 +49,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(physics::trials());
     trials.extend(primitives::trials());
     trials.extend(properties::trials());
+    trials.extend(sampling::trials());
     trials.extend(shapes::trials());
     trials.extend(surfaces::trials());
     trials.extend(spec::trials());

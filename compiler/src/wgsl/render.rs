@@ -62,7 +62,7 @@ const MEDIUM_WORDS: usize = 9;
 const CELL_WORDS: usize = 6;
 
 /// Words of `vol_output` per pixel.
-pub const PIXEL_WORDS: usize = 13;
+pub const PIXEL_WORDS: usize = 14;
 
 /// Depth that stands for "no surface"; the shader writes 1e30.
 const NO_DEPTH: f32 = 1e29;
@@ -95,11 +95,11 @@ const BINDINGS: &str = "\
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_input        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_output       u32: 13 words per pixel of the whole picture, rows from the top, 0 before
+//   4 vol_output       u32: 14 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
-//                      evaluations, samples of the pixel; bits of f32: spread of the radiance and of
-//                      the transmittance
+//                      evaluations, camera rays; where the pixel is: samples in the mean, bits of
+//                      f32 of the spread of the radiance and of the transmittance
 ";
 
 /// The complete shader of a program.

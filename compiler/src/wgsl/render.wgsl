@@ -73,6 +73,7 @@ fn power(x: f32, y: f32) -> f32 {
 }
 
 // How much this invocation has computed, for statistics.
+var<private> counted_camera_rays: u32;
 var<private> counted_rays: u32;
 var<private> counted_samples: u32;
 var<private> counted_evaluations: u32;
@@ -91,18 +92,25 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
     let column = tile.x + id.x;
     let row = tile.y + id.y;
     let index = (row * u32(vol_input[AT_SIZE])) + column;
+    let pixel = vec2f(f32(column), f32(row));
     // Go on with the pixel where the dispatch before stopped.
     var mean = read_pixel(index);
     let last = min(mean.count + u32(vol_input[AT_BUDGET]), u32(vol_input[AT_SAMPLES]));
     while ((mean.count < last) && !is_done(mean)) {
-        let place = vec2f(f32(column), f32(row)) + place_in_pixel(mean.count);
-        mean = add_sample(mean, radiance(camera_ray(place)));
+        mean = add_sample(mean, radiance(camera_ray(pixel + place_in_pixel(mean.count))));
+        if (is_probed() && (mean.count == FIRST_ROUND)) {
+            for (var corner = 0u; corner < 4u; corner++) {
+                let place = pixel + vec2f(f32(corner % 2u), f32(corner / 2u));
+                mean = add_probe(mean, radiance(camera_ray(place)));
+            }
+        }
     }
     write_pixel(index, mean);
 }
 
 // Follows a camera ray.
 fn radiance(ray: Ray) -> Radiance {
+    counted_camera_rays += 1u;
     counted_rays += 1u;
     // Find what is behind the media: surfaces, else the background.
     let contact = trace(ray);
@@ -123,12 +131,12 @@ fn radiance(ray: Ray) -> Radiance {
 fn read_pixel(index: u32) -> Mean {
     let at = PIXEL_WORDS * index;
     return Mean(
-        vol_output[at + 10u],
+        vol_output[at + 11u],
         vec3f(output_float(at), output_float(at + 1u), output_float(at + 2u)),
         vec3f(output_float(at + 3u), output_float(at + 4u), output_float(at + 5u)),
         output_float(at + 6u),
-        output_float(at + 11u),
         output_float(at + 12u),
+        output_float(at + 13u),
     );
 }
 
@@ -150,7 +158,8 @@ fn write_pixel(index: u32, mean: Mean) {
     vol_output[at + 7u] += counted_rays;
     vol_output[at + 8u] += counted_samples;
     vol_output[at + 9u] += counted_evaluations;
-    vol_output[at + 10u] = mean.count;
-    vol_output[at + 11u] = bitcast<u32>(mean.color_spread);
-    vol_output[at + 12u] = bitcast<u32>(mean.transmittance_spread);
+    vol_output[at + 10u] += counted_camera_rays;
+    vol_output[at + 11u] = mean.count;
+    vol_output[at + 12u] = bitcast<u32>(mean.color_spread);
+    vol_output[at + 13u] = bitcast<u32>(mean.transmittance_spread);
 }

@@ -2,5 +2,6 @@
 
 mod media;
 mod same;
+mod sampling;
 mod solids;
 mod support;

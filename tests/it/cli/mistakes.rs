@@ -14,6 +14,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("mistakes::definitions", definitions),
         trial("mistakes::points", points),
         trial("mistakes::frame_rate", frame_rate),
+        trial("mistakes::sampling", sampling),
         #[cfg(target_os = "linux")]
         trial("mistakes::full_disk", full_disk),
     ]
@@ -36,6 +37,13 @@ fn usage(sandbox: &Sandbox) -> Result<(), Failed> {
         ("render ball.vol -o a.png --seed x", "--seed"),
         ("render ball.vol -o a.png --max-error 0", "above 0 and below 1"),
         ("render ball.vol -o a.png --max-error 1", "above 0 and below 1"),
+        ("render ball.vol -o a.png --samples 0", "whole number from 1 to 4096"),
+        ("render ball.vol -o a.png --samples -4", "whole number from 1 to 4096"),
+        ("render ball.vol -o a.png --samples 2.5", "whole number from 1 to 4096"),
+        ("render ball.vol -o a.png --samples 4097", "whole number from 1 to 4096"),
+        ("render ball.vol -o a.png --adaptive 1", "from 0 to below 1"),
+        ("render ball.vol -o a.png --adaptive -0.1", "from 0 to below 1"),
+        ("render ball.vol -o a.png --adaptive nan", "from 0 to below 1"),
         ("render ball.vol -o a.png --frames 3", "0..59"),
         ("render ball.vol -o a.png --frames 3..1", "before the first"),
         ("render ball.vol -o a.#.png --frames 1..3 --time 2s", "cannot be used with"),
@@ -156,6 +164,27 @@ fn frame_rate(sandbox: &Sandbox) -> Result<(), Failed> {
     let run = "render still.vol -o f#.png --backend cpu --frames 0..1";
     sandbox.vol(run)?.expect(1, &["fps"])?;
     equal(sandbox.new_files()?, vec!["still.vol".to_owned()])
+}
+
+/// Values that are only known once params and time are.
+fn sampling(sandbox: &Sandbox) -> Result<(), Failed> {
+    let scene = "param n: int = 1 in -10..10000\nparam e: float = 0 in -1..2\nobject ball { shape: sphere(1) }\n\
+                 render { size: (8, 8), samples: n, adaptive: e / (1 - time) }\n";
+    sandbox.write("many.vol", scene)?;
+    for (options, words) in [
+        ("-D n=0", ["takes 0 samples per pixel", "whole number from 1 to 4096"]),
+        ("-D n=-3", ["takes -3 samples per pixel", "whole number from 1 to 4096"]),
+        ("-D n=5000", ["takes 5000 samples per pixel", "whole number from 1 to 4096"]),
+        ("-D e=-0.5", ["to an error of -0.5", "from 0 to below 1"]),
+        ("-D e=1", ["to an error of 1", "from 0 to below 1"]),
+        ("-D e=0 --time 1s", ["to an error of NaN", "from 0 to below 1"]),
+        ("-D e=1 --time 1s", ["to an error of inf", "from 0 to below 1"]),
+    ] {
+        let run = format!("render many.vol -o a.png --backend cpu {options}");
+        sandbox.vol(&run)?.expect(1, &words).map_err(|failed| in_case(options, &failed))?;
+    }
+    equal(sandbox.new_files()?, vec!["many.vol".to_owned()])?;
+    sandbox.vol("render many.vol -o a.png --backend cpu -D n=20 -D e=0.5")?.expect(0, &[]).map(drop)
 }
 
 #[cfg(target_os = "linux")]

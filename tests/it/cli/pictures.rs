@@ -12,6 +12,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("render::frame_is_the_moment", frame_is_the_moment),
         trial("render::params_and_time_change_the_picture", params_and_time),
         trial("render::stats", stats),
+        trial("render::samples", samples),
         trial("render::summary_names_the_device", summary),
         trial("render::auto_without_a_device_is_cpu", auto_without_device),
         trial("render::replaces_the_old_picture", replaces),
@@ -137,6 +138,44 @@ fn stats(sandbox: &Sandbox) -> Result<(), Failed> {
     equal(stats["device"].as_str().is_some_and(|device| device.contains("thread")), true)
 }
 
+fn samples(sandbox: &Sandbox) -> Result<(), Failed> {
+    let render = |options: &str| -> Result<serde_json::Value, Failed> {
+        sandbox
+            .vol(&format!("render ball.vol -o a.exr --backend cpu --stats s.json {options}"))?
+            .expect(0, &[])?;
+        Ok(serde_json::from_slice(&sandbox.read("s.json")?)?)
+    };
+    let number = |stats: &serde_json::Value, key: &str| {
+        stats[key].as_f64().ok_or_else(|| Failed::from(format!("no number `{key}` in {stats}")))
+    };
+    let of = |stats: &serde_json::Value| -> Result<[f64; 4], Failed> {
+        let keys = ["samples_per_pixel", "adaptive", "mean_samples_per_pixel", "camera_rays"];
+        Ok([
+            number(stats, keys[0])?,
+            number(stats, keys[1])?,
+            number(stats, keys[2])?,
+            number(stats, keys[3])?,
+        ])
+    };
+    let pixels = 32.0 * 18.0;
+    equal(of(&render("")?)?, [1.0, 0.0, 1.0, pixels])?;
+    let one = sandbox.read("a.exr")?;
+    equal(of(&render("--samples 5")?)?, [5.0, 0.0, 5.0, 5.0 * pixels])?;
+    equal(one == sandbox.read("a.exr")?, false)?;
+    let stats = render("--samples 100 --adaptive 0.25")?;
+    let [most, adaptive, mean, rays] = of(&stats)?;
+    equal((most, adaptive, mean * pixels == rays), (100.0, 0.25, true))?;
+    equal(mean > 12.9 && mean < 50.0, true)?;
+    equal(number(&stats, "rays")? > rays, true)?;
+    // The scene says the same, and the command line something else.
+    let scene = super::BALL.replace("fps: 10", "fps: 10, samples: 20 * steps + 40, adaptive: 0.25");
+    sandbox.write("ball.vol", scene)?;
+    equal(of(&render("")?)?, [most, adaptive, mean, rays])?;
+    equal(of(&render("-D steps=1 --adaptive 0")?)?, [60.0, 0.0, 60.0, 60.0 * pixels])?;
+    equal(of(&render("--samples 1")?)?[2], 1.0)?;
+    equal(one == sandbox.read("a.exr")?, true)
+}
+
 fn summary(sandbox: &Sandbox) -> Result<(), Failed> {
     let outcome = sandbox.vol("render ball.vol -o a.png --backend cpu --threads 2")?;
     let outcome = outcome.expect(0, &["a.png: 32x18 in ", " s on CPU, 2 threads, estimated error"])?;
@@ -158,12 +197,18 @@ fn replaces(sandbox: &Sandbox) -> Result<(), Failed> {
     equal(&sandbox.read("a.png")?[1..4], &b"PNG"[..])
 }
 
-/// Presses Ctrl-C in a render of many seconds.
+/// Presses Ctrl-C in renders of many seconds: of many pixels, and of many samples.
 #[cfg(target_os = "linux")]
 fn interrupted(sandbox: &Sandbox) -> Result<(), Failed> {
+    interrupted_with(sandbox, "--size 8000x8000")?;
+    interrupted_with(sandbox, "--size 160x160 --samples 4096")
+}
+
+#[cfg(target_os = "linux")]
+fn interrupted_with(sandbox: &Sandbox, options: &str) -> Result<(), Failed> {
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
-    let arguments = "render ball.vol -o a.png --backend cpu --threads 1 --size 8000x8000 --stats s.json";
+    let arguments = format!("render ball.vol -o a.png --backend cpu --threads 1 --stats s.json {options}");
     let mut command = sandbox.command(arguments.split_whitespace());
     let child = command.stderr(Stdio::piped()).spawn()?;
     // Wait until the program catches the signal: bit 1 of the mask of caught signals.

@@ -51,6 +51,21 @@ fn add_sample(old: Mean, sample: Radiance) -> Mean {
     return mean;
 }
 
+// Lets the radiance at a corner count for the spread, but not for the mean.
+fn add_probe(old: Mean, probe: Radiance) -> Mean {
+    var mean = old;
+    let color = probe.color - mean.color;
+    mean.color_spread = mean.color_spread + dot3(color, color);
+    let transmittance = probe.transmittance - mean.transmittance;
+    mean.transmittance_spread = mean.transmittance_spread + dot3(transmittance, transmittance);
+    return mean;
+}
+
+// Whether corners are probed: where there is a test before the last sample.
+fn is_probed() -> bool {
+    return (vol_input[AT_TOLERANCE] > 0.0) && (u32(vol_input[AT_SAMPLES]) > FIRST_ROUND);
+}
+
 // Whether the pixel takes no more samples.
 fn is_done(mean: Mean) -> bool {
     if (mean.count >= u32(vol_input[AT_SAMPLES])) {

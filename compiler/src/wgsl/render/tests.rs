@@ -156,8 +156,8 @@ fn cells_are_used_if_they_say_more_than_the_box() {
 
 #[test]
 fn depth_without_a_surface_is_infinite() {
-    let first = ([1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30_f32], [1, 2, 3, 1]);
-    let second = ([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], [4, 5, 4_000_000_000, 2]);
+    let first = ([1.0, 2.0, 3.0, 0.5, 0.25, 0.125, 1e30_f32], [1, 2, 3, 1, 1]);
+    let second = ([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], [4, 5, 4_000_000_000, 2, 2]);
     let spreads = [0.5_f32.to_bits(); 2];
     let words = [first, second]
         .map(|(floats, counts)| [&floats.map(f32::to_bits)[..], &counts[..], &spreads[..]].concat())

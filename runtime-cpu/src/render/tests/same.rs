@@ -1,6 +1,8 @@
 //! What must not change a picture, and what the pilot and the controls do.
 
-use super::super::{Batches, camera, choose_step, comb, medium, render, render_reference, shadow, surface};
+use super::super::{
+    Batches, camera, choose_step, comb, medium, render, render_reference, sampling, shadow, surface,
+};
 use super::support::{World, bits, mixed};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use vol_compiler::frame::{Image, Job, Sampling};
@@ -117,7 +119,10 @@ fn pilot_without_media_does_nothing() {
 /// The WGSL twin has the same numbers.
 #[test]
 fn twins_share_their_constants() {
-    let text = include_str!("../../../../compiler/src/wgsl/render.wgsl");
+    let text = concat!(
+        include_str!("../../../../compiler/src/wgsl/render.wgsl"),
+        include_str!("../../../../compiler/src/wgsl/render/sampling.wgsl")
+    );
     let (far, parallel, epsilon, flat) = (camera::FAR, camera::PARALLEL, surface::EPSILON, surface::FLAT);
     assert_eq!((far, parallel, epsilon, flat), (4.0e6, 1e-12, 2.0_f32.powi(-23), 1e-15));
     assert_eq!((shadow::OPAQUE, medium::STOP), (24.0, 2.0_f32.powi(-16)));
@@ -131,6 +136,10 @@ fn twins_share_their_constants() {
         format!("MAX_STEPS: u32 = {}u", surface::MAX_STEPS),
         format!("REFINEMENTS: u32 = {}u", surface::REFINEMENTS),
         format!("MAX_NODES: i32 = {}", comb::MAX_NODES),
+        format!("STRIDE: vec2u = vec2u({}u, {}u)", sampling::STRIDE[0], sampling::STRIDE[1]),
+        format!("FIRST_ROUND: u32 = {}u", sampling::FIRST_ROUND),
+        format!("ROUND: u32 = {}u", sampling::ROUND),
+        format!("LEAST_BRIGHTNESS: f32 = {}", sampling::LEAST_BRIGHTNESS),
     ];
     for line in lines {
         assert!(text.contains(&format!("const {line};")), "{line}");

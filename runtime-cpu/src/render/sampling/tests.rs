@@ -1,3 +1,0 @@
-//! The pattern, edges against their exact area, and what adaptive sampling promises.
-
-use super::*;

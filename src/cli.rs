@@ -88,7 +88,8 @@ pub(crate) struct Render {
     /// brightness; the distance between samples is chosen to meet it
     #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = values::max_error)]
     pub(crate) max_error: f32,
-    /// Rays per pixel, 1 to 4096, instead of the scene's; with an adaptive error the most
+    /// Rays per pixel, 1 to 4096, instead of the scene's; with an adaptive error the most of them
+    /// [default: 1, with an adaptive error 65]
     #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
     /// Standard error of a pixel relative to its brightness at which it takes no more samples,

@@ -17,7 +17,7 @@ use vol_compiler::frame::{Frame, Sampling};
 use vol_compiler::program::{Field, Program, Slot};
 use vol_compiler::{library, lower};
 use vol_language::Analysis;
-use vol_language::blocks::MAX_SAMPLES;
+use vol_language::blocks::{ADAPTIVE_SAMPLES, MAX_SAMPLES};
 use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
 use vol_language::nearest::nearest;
@@ -229,29 +229,50 @@ impl Session {
         Err(Failure::content(text).with_help("set `fps` of the render block to a number above 0"))
     }
 
-    /// How many samples the scene asks for at a moment.
+    /// How many samples a pixel takes at a moment: what the scene asks for, or `samples` and
+    /// `adaptive` instead.
     ///
     /// # Errors
-    /// A content failure if it is no number of samples, or the error is no number from 0 to 1.
-    pub fn sampling(&self, params: &[Vec<f64>], moment: Moment) -> Result<Sampling, Failure> {
+    /// A content failure if the scene's is no number of samples, or its error no number from 0 to
+    /// below 1.
+    pub fn sampling(
+        &self,
+        params: &[Vec<f64>],
+        moment: Moment,
+        samples: Option<u32>,
+        adaptive: Option<f32>,
+    ) -> Result<Sampling, Failure> {
         let numbers = self.program.numbers(params, moment.time, moment.frame);
-        let [samples, adaptive] = [self.program.render.samples, self.program.render.adaptive]
-            .map(|Slot(slot)| numbers[slot as usize]);
-        let name = &self.sources.root().name;
-        if !(samples.fract() == 0.0 && (1.0..=f64::from(MAX_SAMPLES)).contains(&samples)) {
-            let failure = Failure::content(format!("`{name}` takes {samples} samples per pixel"));
-            let range =
-                format!("set `samples` of the render block to a whole number from 1 to {MAX_SAMPLES}");
-            return Err(failure.with_help(range));
+        let at = |Slot(slot): Slot| numbers[slot as usize];
+        let render = &self.program.render;
+        let tolerance = adaptive.map_or_else(|| self.tolerance(at(render.adaptive)), Ok)?;
+        let most = match (samples, render.samples) {
+            (Some(samples), _) => samples,
+            (None, Some(slot)) => self.samples(at(slot))?,
+            (None, None) if tolerance > 0.0 => ADAPTIVE_SAMPLES,
+            (None, None) => 1,
+        };
+        Ok(Sampling { most, tolerance })
+    }
+
+    fn samples(&self, samples: f64) -> Result<u32, Failure> {
+        if samples.fract() == 0.0 && (1.0..=f64::from(MAX_SAMPLES)).contains(&samples) {
+            return Ok(samples as u32);
         }
-        // As the renderer sees it: the largest number below 1 may round to 1.
+        let text = format!("`{}` takes {samples} samples per pixel", self.sources.root().name);
+        let help = format!("set `samples` of the render block to a whole number from 1 to {MAX_SAMPLES}");
+        Err(Failure::content(text).with_help(help))
+    }
+
+    fn tolerance(&self, adaptive: f64) -> Result<f32, Failure> {
+        // As the renderer sees it: the largest number below 1 rounds to 1.
         let tolerance = adaptive as f32;
-        if !(0.0..1.0).contains(&tolerance) {
-            let failure = Failure::content(format!("`{name}` samples adaptively to an error of {adaptive}"));
-            let range = "set `adaptive` of the render block to a number from 0 to below 1";
-            return Err(failure.with_help(range));
+        if (0.0..1.0).contains(&tolerance) {
+            return Ok(tolerance);
         }
-        Ok(Sampling { most: samples as u32, tolerance })
+        let text = format!("`{}` samples to an error of {adaptive}", self.sources.root().name);
+        let help = "set `adaptive` of the render block to a number from 0 to below 1";
+        Err(Failure::content(text).with_help(help))
     }
 
     /// The field called `name`.

@@ -233,8 +233,9 @@ pub struct Render {
     pub size: [u32; 2],
     /// Radiance where nothing is hit.
     pub background: Slot3,
-    /// Samples of a pixel, or the most: see [`crate::frame::Sampling`].
-    pub samples: Slot,
+    /// Samples of a pixel, or the most: see [`crate::frame::Sampling`]; `None` if the scene leaves
+    /// that open.
+    pub samples: Option<Slot>,
     /// Error at which a pixel takes no more samples.
     pub adaptive: Slot,
     /// Length of the animation in seconds.

@@ -23,6 +23,10 @@ pub enum BlockKind {
 /// Largest number of samples per pixel.
 pub const MAX_SAMPLES: u32 = 4096;
 
+/// Samples at most of a pixel that stops when it has enough, where a scene says no number: after as
+/// many there is a test, and their centre of gravity is the pixel's.
+pub const ADAPTIVE_SAMPLES: u32 = 65;
+
 /// All kinds, in the order in which messages list them.
 pub const BLOCK_KINDS: [BlockKind; 6] = [
     BlockKind::Camera,
@@ -175,12 +179,12 @@ fn render() -> Vec<Key> {
         key(
             "samples",
             Type::Int,
-            "rays per pixel, 1 to 4096, of which a pixel is the mean; with `adaptive` the most; default 1",
+            "rays per pixel, 1 to 4096, of which it is the mean; with `adaptive` the most; default 1, with `adaptive` 65",
         ),
         key(
             "adaptive",
             Type::Float,
-            "standard error of a pixel relative to its brightness at which it takes no more samples, below 1; default 0: all take as many",
+            "standard error of a pixel, relative to its brightness, at which it takes no more samples, below 1; default 0: all pixels take as many",
         ),
         key("duration", Type::Float, "length of the animation in seconds; default 0"),
         key("fps", Type::Float, "frames per second; default 30"),

@@ -132,7 +132,7 @@ fn compare_pictures(
     };
     let frame = prepared.frame(size)?;
     let choice = vol_runtime_cpu::choose_step(program, &frame, size, MAX_ERROR);
-    let sampling = prepared.session.sampling(&prepared.params, prepared.moment)?;
+    let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
     let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
     let job = Job { size, step: choice.step, shadow_step: choice.shadow_step, sampling };
     let pair = compare::images(&render(cpu, &frame, &job)?, &render(gpu, &frame, &job)?, GPU_IMAGE);

@@ -7,7 +7,7 @@ use vol::backend::{Choice, Device, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
-use vol_compiler::frame::{Counts, Job, Sampling};
+use vol_compiler::frame::{Counts, Job};
 
 use super::progress::Progress;
 use super::stats::{Phases, Stats, timed};
@@ -109,14 +109,6 @@ fn render(
     Ok(())
 }
 
-/// The scene's sampling, or what the arguments say instead.
-fn sampling(arguments: &cli::Render, of_scene: Sampling) -> Sampling {
-    Sampling {
-        most: arguments.samples.unwrap_or(of_scene.most),
-        tolerance: arguments.adaptive.unwrap_or(of_scene.tolerance),
-    }
-}
-
 /// What the pictures of one run have in common.
 struct Pictures<'a> {
     arguments: &'a cli::Render,
@@ -134,7 +126,8 @@ impl Pictures<'_> {
         super::stop_if_cancelled()?;
         let Prepared { session, params, .. } = self.prepared;
         let Stats { size, max_error, frames, milliseconds: phases, .. } = &mut *self.stats;
-        let sampling = sampling(self.arguments, session.sampling(params, moment)?);
+        let cli::Render { samples, adaptive, .. } = self.arguments;
+        let sampling = session.sampling(params, moment, *samples, *adaptive)?;
         let frame = session.frame(params, moment, *size)?;
         // Choose the distance between samples from a few rays.
         let choice = timed(&mut phases.pilot, || {

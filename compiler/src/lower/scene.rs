@@ -140,7 +140,10 @@ fn render(lowerer: &mut Lowerer<'_>, block: Option<&Block>) -> Lowered<Render> {
     Ok(Render {
         size,
         background: lowerer.vector_slots(block, "background")?.unwrap_or(black),
-        samples: lowerer.scalar_slot(block, "samples", 1.0)?,
+        samples: match block.entry("samples") {
+            Some(_) => Some(lowerer.scalar_slot(block, "samples", 1.0)?),
+            None => None,
+        },
         adaptive: lowerer.scalar_slot(block, "adaptive", 0.0)?,
         duration: lowerer.scalar_slot(block, "duration", 0.0)?,
         fps: lowerer.scalar_slot(block, "fps", 30.0)?,

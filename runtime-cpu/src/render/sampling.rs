@@ -22,7 +22,7 @@
 //! The trap of such tests is a pixel whose first samples agree by chance. A straight edge that enters a
 //! pixel has one of its corners on either side; so the first test also looks at the corners. What
 //! it finds there counts as samples would, for the spread only: n samples may have missed 1/n of the
-//! pixel, and a difference of c over that part is an error of c/n. Without, the error stayed at 0.015
+//! pixel, and a difference of c over that part is an error of c/n. Without, the error stayed above 0.015
 //! whatever the tolerance; with (test `adaptive_sampling_keeps_its_promise`) it is below a quarter of the
 //! tolerance, since the standard error is that of random places and these do better along edges.
 //! What lies in a pixel and touches neither its corners nor its first nine samples is missed for good:

@@ -167,6 +167,7 @@ fn samples(sandbox: &Sandbox) -> Result<(), Failed> {
     equal((most, adaptive, mean * pixels == rays), (100.0, 0.25, true))?;
     equal(mean > 12.9 && mean < 50.0, true)?;
     equal(number(&stats, "rays")? > rays, true)?;
+    equal(of(&render("--adaptive 0.25")?)?[0], 65.0)?;
     // The scene says the same, and the command line something else.
     let scene = super::BALL.replace("fps: 10", "fps: 10, samples: 20 * steps + 40, adaptive: 0.25");
     sandbox.write("ball.vol", scene)?;

@@ -49,7 +49,7 @@ fn program(objects: usize, media: usize) -> Program {
         render: Render {
             size: [4, 4],
             background: [NOWHERE; 3],
-            samples: NOWHERE,
+            samples: None,
             adaptive: NOWHERE,
             duration: NOWHERE,
             fps: NOWHERE,

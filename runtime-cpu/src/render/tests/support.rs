@@ -163,7 +163,7 @@ impl World {
             render: Render {
                 size: [16, 16],
                 background: [NOWHERE; 3],
-                samples: NOWHERE,
+                samples: None,
                 adaptive: NOWHERE,
                 duration: NOWHERE,
                 fps: NOWHERE,

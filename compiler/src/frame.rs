@@ -126,7 +126,15 @@ pub struct LightFrame {
     pub color: [f32; 3],
     /// Whether objects and media block it.
     pub shadows: bool,
+    /// Tangent of half the angle across a distant light, at most [`MAX_SPREAD_TANGENT`], or radius of a
+    /// point light; 0 for hard shadows.
+    pub size: f32,
+    /// Distance within which surfaces darken each other in this light; 0 if they do not.
+    pub occlusion: f32,
 }
+
+/// Largest size of a distant light: half the angle across it is then 60 degrees.
+pub const MAX_SPREAD_TANGENT: f64 = 1.732_050_807_568_877_2;
 
 /// What is asked of a render, beside the scene.
 #[derive(Clone, Copy, Debug)]
@@ -287,6 +295,8 @@ impl Program {
             },
             color: round3(at3(light.color)),
             shadows: on(light.shadows),
+            size: light.size.map_or(0.0, |slot| size_of_light(light.kind, at(slot))),
+            occlusion: light.occlusion.map_or(0.0, |slot| at(slot).max(0.0) as f32),
         });
         let lights = lights.collect();
         let view = camera::View {
@@ -357,6 +367,16 @@ fn control_points(curve: &crate::program::Curve, uniforms: &[f64]) -> Vec<Quadra
     let at3 = |slots: Slot3| slots.map(|slot| uniforms[slot.0 as usize]);
     let segments = curve.segments.iter();
     segments.map(|&[a, b, c]| Quadratic { a: at3(a), b: at3(b), c: at3(c) }).collect()
+}
+
+/// See [`LightFrame::size`].
+fn size_of_light(kind: LightKind, given: f64) -> f32 {
+    let given = given.max(0.0);
+    let size = match kind {
+        LightKind::Distant(_) => (0.5 * given.min(3.0)).tan().min(MAX_SPREAD_TANGENT),
+        LightKind::Point(_) => given,
+    };
+    size as f32
 }
 
 fn object_frame(index: usize, object: &crate::program::Object, solid: &Solid, stride: Stride) -> ObjectFrame {

@@ -200,6 +200,11 @@ pub struct Light {
     pub color: Slot3,
     /// Whether objects and media block it.
     pub shadows: Slot,
+    /// How large it is: angle across a distant light in radians, radius of a point light; none if it has
+    /// no size in any frame.
+    pub size: Option<Slot>,
+    /// Distance within which surfaces darken each other; none if they never do.
+    pub occlusion: Option<Slot>,
     /// Whether it is on: 0 or 1.
     pub enabled: Slot,
 }

@@ -115,6 +115,21 @@ fn light() -> Vec<Key> {
         key("at", Type::Vec3, "position of a point light; `color` is then its radiant intensity"),
         key("color", Type::Color, "colour and strength; default 1"),
         key("shadows", Type::Bool, "whether surfaces and media block this light; default true"),
+        key(
+            "spread",
+            Type::Angle,
+            "angle across a distant light as seen from the scene, 0deg to 120deg: shadows of surfaces get soft edges; the sun's is 0.53deg; default 0deg",
+        ),
+        key(
+            "radius",
+            Type::Float,
+            "radius of a point light in scene units: shadows of surfaces get soft edges; default 0",
+        ),
+        key(
+            "occlusion",
+            Type::Float,
+            "distance within which surfaces darken each other in this light; default 0, not at all",
+        ),
         key("when", Type::Bool, "whether the light is on; default true"),
     ]
 }

@@ -5,7 +5,8 @@
 //!
 //! 1. `sampling`: places in each pixel; `camera`: a ray through each of them.
 //! 2. `surface`: sphere tracing to the first surface, false position onto it, its normal.
-//! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`.
+//! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`, those with a
+//!    size through `penumbra`; `occlusion` by surfaces around.
 //! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray.
 //! 5. `film`: `color = L + T * (surface or background)`, tiles, threads; `sampling` takes the mean.
 //!
@@ -19,11 +20,14 @@ mod comb;
 mod fields;
 mod film;
 mod medium;
+mod occlusion;
+mod penumbra;
 mod pilot;
 mod sampling;
 mod scene;
 mod shade;
 mod shadow;
+mod stride;
 mod surface;
 #[cfg(test)]
 mod tests;

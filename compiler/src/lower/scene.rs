@@ -105,6 +105,15 @@ impl Lowerer<'_> {
         }
     }
 
+    /// The slot of a number that is left out where it is always 0.
+    fn optional_slot(&mut self, block: &Block, key: &str) -> Lowered<Option<Slot>> {
+        let Some((value, span)) = self.entry(block, key)? else { return Ok(None) };
+        if self.graph.constant(value.scalar()) == Some(0.0) {
+            return Ok(None);
+        }
+        Ok(Some(self.slot(value.scalar(), &format!("`{key}`"), span)?))
+    }
+
     fn vector_slots(&mut self, block: &Block, key: &str) -> Lowered<Option<Slot3>> {
         match self.entry(block, key)? {
             Some((value, span)) => Ok(Some(self.slots(value.vec3(), &format!("`{key}`"), span)?)),
@@ -180,11 +189,17 @@ fn light(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Light> {
         (None, None) => unreachable!("the checker asks a light for `from` or `at`"),
     };
     let white = lowerer.constant_slots([1.0; 3]);
+    let size = match kind {
+        LightKind::Distant(_) => lowerer.optional_slot(block, "spread")?,
+        LightKind::Point(_) => lowerer.optional_slot(block, "radius")?,
+    };
     Ok(Light {
         name: block.name.clone(),
         kind,
         color: lowerer.vector_slots(block, "color")?.unwrap_or(white),
         shadows: lowerer.scalar_slot(block, "shadows", 1.0)?,
+        size,
+        occlusion: lowerer.optional_slot(block, "occlusion")?,
         enabled: lowerer.scalar_slot(block, "when", 1.0)?,
     })
 }
@@ -197,6 +212,8 @@ fn key_light(lowerer: &mut Lowerer<'_>) -> Light {
         kind: LightKind::Distant(lowerer.constant_slots(direction)),
         color: lowerer.constant_slots([strength; 3]),
         shadows: on,
+        size: None,
+        occlusion: None,
         enabled: on,
     }
 }

@@ -25,7 +25,7 @@
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
 //! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
-//! | after them | `AT_LIGHTS` | 8 words per light of the frame: distant, position or direction xyz, color rgb, shadows |
+//! | after them | `AT_LIGHTS` | 10 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
@@ -38,13 +38,16 @@ use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
-const INTEGRATOR: [&str; 8] = [
+const INTEGRATOR: [&str; 11] = [
     include_str!("render.wgsl"),
     include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
+    include_str!("render/stride.wgsl"),
     include_str!("render/surface.wgsl"),
     include_str!("render/shade.wgsl"),
     include_str!("render/shadow.wgsl"),
+    include_str!("render/penumbra.wgsl"),
+    include_str!("render/occlusion.wgsl"),
     include_str!("render/comb.wgsl"),
     include_str!("render/medium.wgsl"),
 ];
@@ -52,8 +55,11 @@ const INTEGRATOR: [&str; 8] = [
 /// Words before the objects.
 const HEADER_WORDS: usize = 27;
 
-/// Words of an object and of a light.
-const RECORD_WORDS: usize = 8;
+/// Words of an object.
+const OBJECT_WORDS: usize = 8;
+
+/// Words of a light.
+const LIGHT_WORDS: usize = 10;
 
 /// Words of a medium.
 const MEDIUM_WORDS: usize = 9;
@@ -119,17 +125,17 @@ fn glue(program: &Program) -> String {
     let mut text =
         String::from("// ---- this program ------------------------------------------------------------\n\n");
     let (objects, media) = (program.objects.len(), program.media.len());
-    let media_at = HEADER_WORDS + RECORD_WORDS * objects;
+    let media_at = HEADER_WORDS + OBJECT_WORDS * objects;
     let counts = [
         ("OBJECT_COUNT", objects),
         ("MEDIUM_COUNT", media),
         // Arrays cannot be empty.
         ("OBJECT_SLOTS", objects.max(1)),
         ("MEDIUM_SLOTS", media.max(1)),
-        ("OBJECT_WORDS", RECORD_WORDS),
+        ("OBJECT_WORDS", OBJECT_WORDS),
         ("MEDIUM_WORDS", MEDIUM_WORDS),
         ("CELL_WORDS", CELL_WORDS),
-        ("LIGHT_WORDS", RECORD_WORDS),
+        ("LIGHT_WORDS", LIGHT_WORDS),
         ("PIXEL_WORDS", PIXEL_WORDS),
         ("AT_OBJECTS", HEADER_WORDS),
         ("AT_MEDIA", media_at),
@@ -137,6 +143,15 @@ fn glue(program: &Program) -> String {
     ];
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
+    }
+    // What no light asks for is left out by the device's compiler.
+    let lights = &program.lights;
+    let switches = [
+        ("SOFT_LIGHTS", lights.iter().any(|light| light.size.is_some())),
+        ("OCCLUDING_LIGHTS", lights.iter().any(|light| light.occlusion.is_some())),
+    ];
+    for (name, value) in switches {
+        text += &format!("const {name}: bool = {value};\n");
     }
     for pick in picks(program) {
         text += &pick.wgsl();
@@ -303,7 +318,7 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     words.push(frame.lights.len() as f32);
     words.extend([job.sampling.most as f32, job.sampling.tolerance, budget as f32]);
     // Records of all objects and media of the program; those that are not in the frame stay 0.
-    let mut objects = vec![[0.0; RECORD_WORDS]; program.objects.len()];
+    let mut objects = vec![[0.0; OBJECT_WORDS]; program.objects.len()];
     for object in &frame.objects {
         let state = if object.shows_normals { 2.0 } else { 1.0 };
         let safe_scale = match object.stride {
@@ -314,7 +329,7 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     }
     let mut media = vec![[0.0; MEDIUM_WORDS]; program.media.len()];
     let cells_at = words.len() + objects.as_flattened().len() + media.as_flattened().len();
-    let cells_at = cells_at + RECORD_WORDS * frame.lights.len();
+    let cells_at = cells_at + LIGHT_WORDS * frame.lights.len();
     let mut cells = Vec::new();
     for medium in &frame.media {
         let state = match medium.lighting {
@@ -332,7 +347,7 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     for light in &frame.lights {
         words.push(f32::from(u8::from(light.distant)));
         words.extend([light.position, light.color].concat());
-        words.push(f32::from(u8::from(light.shadows)));
+        words.extend([f32::from(u8::from(light.shadows)), light.size, light.occlusion]);
     }
     words.extend(cells);
     words.into_iter().map(f32::to_bits).collect()

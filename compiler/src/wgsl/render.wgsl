@@ -16,6 +16,7 @@ const FLAT: f32 = 1e-15;
 const OPAQUE: f32 = 24.0;
 const STOP: f32 = 0x1p-16f;
 const NO_DEPTH: f32 = 1e30;
+const MAX_SPREAD_TANGENT: f32 = 1.7320508;
 const MAX_STEPS: u32 = 2000u;
 const REFINEMENTS: u32 = 4u;
 const MAX_NODES: i32 = 16384;

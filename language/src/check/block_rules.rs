@@ -9,6 +9,9 @@ use crate::diag::Diagnostic;
 use crate::hir::{Block, ExprId};
 use std::f64::consts::PI;
 
+/// Largest angle across a distant light, in radians.
+const MAX_SPREAD: f64 = 2.0 * PI / 3.0;
+
 /// Largest width and height of a picture, in pixels.
 const MAX_SIZE: f64 = 16384.0;
 
@@ -23,6 +26,7 @@ impl Checker<'_> {
             BlockKind::Light => {
                 self.check_place(block);
                 self.check_direction(block);
+                self.check_light_size(block);
             }
             BlockKind::Object | BlockKind::Medium | BlockKind::Style => {}
             BlockKind::Render => {
@@ -90,6 +94,37 @@ impl Checker<'_> {
             let message = "the direction towards a light must not be zero";
             let error = Diagnostic::error("E0309", message, self.span(from), "this is zero");
             self.report(error.with_help("write `from: (0, 1, 0)` for light from above"));
+        }
+    }
+
+    /// A distant light spreads over an angle, a light at a place has a radius, and none is negative.
+    fn check_light_size(&mut self, block: &Block) {
+        let mut misplaced = |key: &str, other: &str, label: &str, help: &str| {
+            if let (Some(value), Some(_)) = (block.entry(key), block.entry(other)) {
+                let message = format!("a light with `{other}` has no `{key}`");
+                let error = Diagnostic::error("E0317", message, self.span(value), label);
+                self.report(error.with_help(help));
+            }
+        };
+        let far = "a distant light has an angle, but no place at which a radius could be measured";
+        misplaced("radius", "from", far, "write `spread: 2deg`, the angle across the light");
+        let near = "the angle across a light at a place depends on how far away one is";
+        misplaced("spread", "at", near, "write `radius: 0.2`, in scene units");
+        let ranges: [(&str, f64, &str, &str); 3] = [
+            ("spread", MAX_SPREAD, "between 0deg and 120deg", "spread: 2deg"),
+            ("radius", f64::INFINITY, "at least 0", "radius: 0.2"),
+            ("occlusion", f64::INFINITY, "at least 0", "occlusion: 0.5"),
+        ];
+        for (key, most, range, example) in ranges {
+            // An animated size is held within its range when its frame is drawn.
+            let Some((value, [size, ..])) = self.entry_constant(block, key) else { continue };
+            if !(0.0..=most).contains(&size) {
+                let size =
+                    if key == "spread" { format!("{}deg", size.to_degrees()) } else { size.to_string() };
+                let message = format!("`{key}` of a light must be {range}");
+                let error = Diagnostic::error("E0317", message, self.span(value), format!("this is {size}"));
+                self.report(error.with_help(format!("write `{example}`")));
+            }
         }
     }
 

@@ -54,6 +54,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0314", "the timing of the animation is out of range"),
     ("E0315", "the camera looks at the place where it stands"),
     ("E0316", "a block is named that does not exist, or is of another kind"),
+    ("E0317", "the size of a light does not fit its kind or is out of range"),
     ("E0319", "the number of samples of a pixel, or their allowed error, is out of range"),
     ("W0101", "a top-level `let` is never used"),
     ("W0102", "a param is never used"),

@@ -90,6 +90,8 @@ pub(crate) struct Light<R> {
     pub(crate) position: Vec3<R>,
     pub(crate) color: Vec3<R>,
     pub(crate) shadows: bool,
+    pub(crate) size: R,
+    pub(crate) occlusion: R,
 }
 
 impl<R: Real> Scene<R> {
@@ -107,6 +109,8 @@ impl<R: Real> Scene<R> {
             position: vector(light.position),
             color: vector(light.color),
             shadows: light.shadows,
+            size: R::from_f32(light.size),
+            occlusion: R::from_f32(light.occlusion),
         });
         Self {
             footprint: (R::from_f32(2.0) * length(camera.up)) / size[1],

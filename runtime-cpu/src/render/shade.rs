@@ -4,10 +4,12 @@
 
 use super::camera::{FAR, Ray};
 use super::fields::{Fields, Points};
+use super::penumbra::Cone;
 use super::scene::{Integrator, Light};
 use super::shadow::ShadowRay;
 use super::surface::{Contact, shadow_bias};
 use crate::real::{Real, Vec3, add, dot, mul, scale, splat, sub};
+use vol_compiler::frame::MAX_SPREAD_TANGENT;
 use vol_compiler::program::SURFACE_OUTPUTS;
 
 /// Light on its way to a point.
@@ -19,6 +21,8 @@ pub(crate) struct Arriving<R> {
     pub(crate) distance: R,
     /// Irradiance on a plane that faces the light, if nothing is between.
     pub(crate) irradiance: Vec3<R>,
+    /// Tangent of half the angle across the light.
+    pub(crate) slope: R,
 }
 
 /// How a surface answers light, see [`SURFACE_OUTPUTS`].
@@ -43,7 +47,12 @@ struct Facing<R> {
 /// What a light sends to a point.
 pub(crate) fn arriving<R: Real>(light: &Light<R>, point: Vec3<R>) -> Arriving<R> {
     if light.distant {
-        return Arriving { direction: light.position, distance: R::from_f32(FAR), irradiance: light.color };
+        return Arriving {
+            direction: light.position,
+            distance: R::from_f32(FAR),
+            irradiance: light.color,
+            slope: light.size,
+        };
     }
     let toward = sub(light.position, point);
     // At the very place of the light the irradiance stays finite.
@@ -53,6 +62,7 @@ pub(crate) fn arriving<R: Real>(light: &Light<R>, point: Vec3<R>) -> Arriving<R>
         direction: toward.map(|component| component / distance),
         distance,
         irradiance: light.color.map(|component| component / squared),
+        slope: (light.size / distance).min(R::from_f32(MAX_SPREAD_TANGENT as f32)),
     }
 }
 
@@ -73,7 +83,12 @@ impl<F: Fields> Integrator<'_, F> {
         for index in 0..self.scene.lights.len() {
             let light = &self.scene.lights[index];
             let facing = self.facing(light, contacts, &responses);
-            let seen = self.seen(light, contacts, &facing);
+            let mut seen = self.seen(light, contacts, &facing);
+            if light.occlusion > F::Real::ZERO {
+                let places: Vec<_> = facing.iter().map(|facing| &contacts[facing.contact]).collect();
+                let open = self.openness(&places, light.occlusion);
+                seen.iter_mut().zip(open).for_each(|(seen, open)| *seen = scale(*seen, open));
+            }
             for (facing, seen) in facing.iter().zip(seen) {
                 let contact = &contacts[facing.contact];
                 let response = &responses[facing.contact];
@@ -155,6 +170,11 @@ impl<F: Fields> Integrator<'_, F> {
             )
         };
         let rays: Vec<_> = facing.iter().map(shadow_ray).collect();
+        if light.size > F::Real::ZERO {
+            let cones = rays.iter().zip(facing);
+            let cones = cones.map(|(&shadow, facing)| Cone { shadow, slope: facing.arriving.slope });
+            return self.soft_visibility(&cones.collect::<Vec<_>>());
+        }
         self.visibility(&rays)
     }
 }
@@ -178,11 +198,18 @@ mod tests {
 
     #[test]
     fn point_light_falls_off_with_the_square() {
-        let light =
-            Light { distant: false, position: [0.0_f32, 3.0, 0.0], color: [18.0, 9.0, 0.0], shadows: true };
+        let light = Light {
+            distant: false,
+            position: [0.0_f32, 3.0, 0.0],
+            color: [18.0, 9.0, 0.0],
+            shadows: true,
+            size: 6.0,
+            occlusion: 0.0,
+        };
         let at = arriving(&light, [0.0; 3]);
         assert_eq!(at.direction, [0.0, 1.0, 0.0]);
         assert_eq!(at.irradiance, [2.0, 1.0, 0.0]);
+        assert_eq!(at.slope, MAX_SPREAD_TANGENT as f32, "the widest, instead of 2");
         let inside = arriving(&light, light.position);
         assert!(inside.direction[0].is_finite() && inside.irradiance[0].is_finite());
     }

@@ -1,9 +1,12 @@
 //! How much of a light arrives at a point: solids between hide it, media between weaken it.
 //!
+//! Media are lit as if every light were a point: they blur the edges of their shadows themselves.
+//!
 //! Twin: `compiler/src/wgsl/render/shadow.wgsl`.
 
 use super::camera::{FAR, Ray};
 use super::fields::Fields;
+use super::penumbra::Cone;
 use super::scene::Integrator;
 use super::surface::{MAX_STEPS, Walker, start};
 use crate::real::{Real, Vec3, add, scale, smallest, splat};
@@ -34,17 +37,36 @@ impl<F: Fields> Integrator<'_, F> {
     /// Fraction of the light that arrives, per channel.
     pub(crate) fn visibility(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<Vec3<F::Real>> {
         self.stats.shadow_rays += rays.len() as u64;
-        let mut all = Vec::with_capacity(rays.len());
+        let mut parts = Vec::with_capacity(rays.len());
         for batch in rays.chunks(self.batches.rays) {
+            let blocked = self.blocked(batch).into_iter();
+            parts.extend(blocked.map(|blocked| if blocked { F::Real::ZERO } else { F::Real::ONE }));
+        }
+        self.through_media(rays, &parts)
+    }
+
+    /// Fraction of lights with a size that arrives, per channel: the part that no solid hides, weakened by
+    /// the media towards the centre.
+    pub(super) fn soft_visibility(&mut self, cones: &[Cone<F::Real>]) -> Vec<Vec3<F::Real>> {
+        let parts = self.lit_parts(cones);
+        let rays: Vec<_> = cones.iter().map(|cone| cone.shadow).collect();
+        self.through_media(&rays, &parts)
+    }
+
+    /// The part of each light that solids let through, weakened by the media.
+    fn through_media(&mut self, rays: &[ShadowRay<F::Real>], parts: &[F::Real]) -> Vec<Vec3<F::Real>> {
+        let mut all = Vec::with_capacity(rays.len());
+        let batches = rays.chunks(self.batches.rays).zip(parts.chunks(self.batches.rays));
+        for (batch, parts) in batches {
             let mut seen = vec![splat(F::Real::ZERO); batch.len()];
-            // Only what no solid hides goes through the media.
-            let blocked = self.blocked(batch);
-            let free: Vec<usize> = (0..batch.len()).filter(|&ray| !blocked[ray]).collect();
+            // Only what solids do not hide goes through the media.
+            let free: Vec<usize> = (0..batch.len()).filter(|&ray| parts[ray] > F::Real::ZERO).collect();
             let paths: Vec<_> = free.iter().map(|&ray| batch[ray].ray).collect();
             let ends: Vec<_> = free.iter().map(|&ray| batch[ray].length).collect();
             for (ray, depth) in free.into_iter().zip(self.optical_depth(&paths, &ends)) {
                 let dark = smallest(depth) > F::Real::from_f32(OPAQUE);
-                seen[ray] = if dark { splat(F::Real::ZERO) } else { depth.map(Real::decay) };
+                let weakened = scale(depth.map(Real::decay), parts[ray]);
+                seen[ray] = if dark { splat(F::Real::ZERO) } else { weakened };
             }
             all.extend(seen);
         }

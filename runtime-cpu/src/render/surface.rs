@@ -1,10 +1,4 @@
-//! Where rays meet solids: sphere tracing, and segment tracing (Galin et al. 2020) of what is steeper
-//! than a distance.
-//!
-//! A distance can be walked as it is. Displaced solids and fields of the author's own change faster: their
-//! value is divided by a bound on their slope over the very piece of the ray that is about to be walked,
-//! at most twice as long as the last. So a bound that is loose over long pieces costs a shorter step, never
-//! a hole.
+//! Where rays meet solids: sphere tracing, by what [`super::stride`] makes of the distances.
 //!
 //! All rays of a batch walk together, one step each at a time, and every solid is evaluated for
 //! the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
@@ -18,7 +12,8 @@
 
 use super::camera::{FAR, Ray, Span, contains, slab};
 use super::fields::{Fields, Points};
-use super::scene::{Batches, Integrator, Scene, Solid, Stride};
+use super::scene::{Batches, Integrator, Scene};
+use super::stride::Ahead;
 use crate::real::{Real, Vec3, length, scale};
 
 /// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
@@ -43,26 +38,6 @@ pub(crate) struct Walker<R> {
     pub(crate) t: R,
     /// Where it was one step earlier.
     pub(crate) from: R,
-}
-
-impl<R: Real> Walker<R> {
-    /// How far the next step may go: to where a distance proper would, and at most twice as far as
-    /// the last, if there was one.
-    fn reach(&self, value: R) -> R {
-        let last = self.t - self.from;
-        let twice = R::from_f32(2.0) * last;
-        let value = value.max(R::ZERO);
-        if last > R::ZERO { value.min(twice) } else { value }
-    }
-}
-
-/// Corners of the box of a piece of a ray, a little larger than rounding can make it.
-fn way<R: Real>(scene: &Scene<R>, ray: &Ray<R>, t: R, reach: R) -> [Vec3<R>; 2] {
-    let (from, to) = (ray.at(t), ray.at(t + reach));
-    let slack = R::from_f32(4.0 * EPSILON) * (scene.remoteness + (t + reach));
-    let lo = [0, 1, 2].map(|axis| from[axis].min(to[axis]) - slack);
-    let hi = [0, 1, 2].map(|axis| from[axis].max(to[axis]) + slack);
-    [lo, hi]
 }
 
 /// What a walker has around it.
@@ -199,8 +174,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
             let [mut safe] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
             safe.iter_mut().for_each(|value| *value = sides[index] * *value);
-            let there = || here.iter().map(|&which| &walkers[which]);
-            self.shorten(solid, rays, there, &mut safe);
+            let ahead = |which: &usize| {
+                let walker: &Walker<F::Real> = &walkers[*which];
+                Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
+            };
+            self.shorten(solid, &here.iter().map(ahead).collect::<Vec<_>>(), &mut safe);
             for (which, safe) in here.into_iter().zip(safe) {
                 if safe < all[which].distance {
                     all[which].distance = safe;
@@ -209,41 +187,6 @@ impl<'a, F: Fields> Integrator<'a, F> {
             }
         }
         all
-    }
-
-    /// Makes values of a solid's field safe to walk; what is inside stays as it is.
-    fn shorten<'w, W: Iterator<Item = &'w Walker<F::Real>>>(
-        &mut self,
-        solid: &Solid<F::Real>,
-        rays: &[Ray<F::Real>],
-        there: impl Fn() -> W,
-        values: &mut [F::Real],
-    ) where
-        F::Real: 'w,
-    {
-        let steepness = match solid.stride {
-            Stride::Within(steepness) => steepness,
-            Stride::Scale(scale) => {
-                values.iter_mut().for_each(|value| *value = scale * *value);
-                return;
-            }
-        };
-        // As far as a step may go, and the box of what is on the way.
-        let reaches: Vec<_> = there().zip(&*values).map(|(walker, &value)| walker.reach(value)).collect();
-        let [mut lo, mut hi] = [(); 2].map(|()| std::array::from_fn(|_| Vec::with_capacity(reaches.len())));
-        for (walker, &reach) in there().zip(&reaches) {
-            let place = way(self.scene, &rays[walker.ray], walker.t, reach);
-            for axis in 0..3 {
-                lo[axis].push(place[0][axis]);
-                hi[axis].push(place[1][axis]);
-            }
-        }
-        let [lo, hi]: [[Vec<F::Real>; 3]; 2] = [lo, hi];
-        let [steepest] = self.fields.apply(steepness, &[&lo[0], &lo[1], &lo[2], &hi[0], &hi[1], &hi[2]]);
-        self.stats.surface_evaluations += steepest.len() as u64;
-        for ((value, reach), steepest) in values.iter_mut().zip(reaches).zip(steepest) {
-            *value = if *value > F::Real::ZERO { (*value / steepest).min(reach) } else { *value };
-        }
     }
 
     /// First surface on each ray, in the order of the rays.

@@ -13,6 +13,7 @@ struct Arriving {
     distance: f32,
     irradiance: vec3f,
     shadows: bool,
+    slope: f32,
 }
 
 fn light_count() -> u32 {
@@ -30,7 +31,9 @@ fn arriving(light: u32, point: vec3f) -> Arriving {
     let direction = select(toward / distance, word3(at + 1u), distant);
     let irradiance = select(word3(at + 4u) / squared, word3(at + 4u), distant);
     let shadows = vol_input[at + 7u] != 0.0;
-    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows);
+    let size = vol_input[at + 8u];
+    let slope = select(min(size / distance, MAX_SPREAD_TANGENT), size, distant);
+    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope);
 }
 
 // Radiance that leaves a contact towards the eye.
@@ -46,7 +49,13 @@ fn shade(ray: Ray, contact: Contact) -> vec3f {
         let lamp = arriving(light, contact.position);
         let cosine = dot3(contact.normal, lamp.direction);
         if (cosine > 0.0) {
-            let seen = surface_visibility(lamp, contact);
+            var seen = surface_visibility(lamp, contact);
+            if (OCCLUDING_LIGHTS) {
+                let reach = vol_input[AT_LIGHTS + (LIGHT_WORDS * light) + 9u];
+                if (reach > 0.0) {
+                    seen = seen * openness(contact, reach);
+                }
+            }
             color += (lamp.irradiance * seen) * answer(response, contact, lamp, cosine, ray.direction);
         }
     }
@@ -62,6 +71,11 @@ fn surface_visibility(lamp: Arriving, contact: Contact) -> vec3f {
     let bias = shadow_bias(contact.t);
     let offset = max(bias, 2.0 * contact.residual);
     let origin = contact.position + (contact.normal * offset);
+    if (SOFT_LIGHTS) {
+        if (lamp.slope > 0.0) {
+            return soft_visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.slope);
+        }
+    }
     return visibility(Ray(origin, lamp.direction), lamp.distance, bias);
 }
 

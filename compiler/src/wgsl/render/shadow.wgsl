@@ -4,12 +4,24 @@
 // Fraction of the light that arrives, per channel.
 fn visibility(ray: Ray, distance: f32, bias: f32) -> vec3f {
     counted_rays += 1u;
-    // Only what no solid hides goes through the media.
-    if (blocked(ray, distance, 0.25 * bias)) {
+    let part = select(1.0, 0.0, blocked(ray, distance, 0.25 * bias));
+    return through_media(ray, distance, part);
+}
+
+// Fraction of a light with a size that arrives, per channel.
+fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32) -> vec3f {
+    let part = lit_part_of(ray, distance, 0.25 * bias, slope);
+    return through_media(ray, distance, part);
+}
+
+// The part of a light that solids let through, weakened by the media.
+fn through_media(ray: Ray, distance: f32, part: f32) -> vec3f {
+    // Only what solids do not hide goes through the media.
+    if (part <= 0.0) {
         return vec3f(0.0);
     }
     let depth = optical_depth(ray, distance);
-    return select(decay3(depth), vec3f(0.0), smallest(depth) > OPAQUE);
+    return select(decay3(depth) * part, vec3f(0.0), smallest(depth) > OPAQUE);
 }
 
 // Whether the ray enters a solid before it reaches the light.

@@ -1,4 +1,4 @@
-// Where rays meet solids: sphere tracing, and segment tracing of what is steeper than a distance.
+// Where rays meet solids: sphere tracing.
 // Twin: runtime-cpu/src/render/surface.rs, which says why.
 
 struct Near {
@@ -89,29 +89,6 @@ fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> arr
     return spans;
 }
 
-// Makes the value of a solid's field safe to walk; what is inside stays as it is.
-fn shorten(solid: u32, ray: Ray, t: f32, before: f32, value: f32) -> f32 {
-    let scale = vol_input[object_word(solid) + 7u];
-    if (scale != BY_STEEPNESS) {
-        return scale * value;
-    }
-    // As far as a step may go, and the box of what is on the way.
-    let ahead = reach(t, before, value);
-    let slack = (4.0 * EPSILON) * (remoteness() + (t + ahead));
-    let here = ray_at(ray, t);
-    let there = ray_at(ray, t + ahead);
-    let steepest = object_steepness(solid, min(here, there) - slack, max(here, there) + slack);
-    return select(value, min(value / steepest, ahead), value > 0.0);
-}
-
-// How far the next step may go: to where a distance proper would, and at most twice as far as the last,
-// if there was one.
-fn reach(t: f32, before: f32, value: f32) -> f32 {
-    let last = t - before;
-    let outside = max(value, 0.0);
-    return select(outside, min(outside, 2.0 * last), last > 0.0);
-}
-
 // What is around a place on the ray, `before` that of the last step.
 fn nearest(
     ray: Ray,
@@ -130,7 +107,7 @@ fn nearest(
             near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
-            let safe = shorten(solid, ray, t, before, seen);
+            let safe = shorten(solid, ray, t, t - before, seen);
             let closer = safe < near.distance;
             near.distance = select(near.distance, safe, closer);
             near.solid = select(near.solid, solid, closer);

@@ -92,7 +92,14 @@ fn frame(program: &Program) -> Frame {
             bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
             cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }; 2],
         }],
-        lights: vec![LightFrame { distant: true, position: [0.0, 1.0, 0.0], color: [2.0; 3], shadows: true }],
+        lights: vec![LightFrame {
+            distant: true,
+            position: [0.0, 1.0, 0.0],
+            color: [2.0; 3],
+            shadows: true,
+            size: 0.0,
+            occlusion: 0.0,
+        }],
         background: [13.0, 14.0, 15.0],
         bounds: whole,
     }
@@ -126,9 +133,9 @@ fn words_stand_where_the_shader_looks() {
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
     assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-    let cells = lights + 8;
+    let cells = lights + 10;
     assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., cells as f32, 2.0]);
-    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0]);
+    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0]);
     assert_eq!(words[cells..], [0.0; 12], "two cells");
 }
 

@@ -136,6 +136,8 @@ fn lamp_in_a_ball_stays_there() {
         position: [0.0, 0.5, 0.0],
         color: [50.0; 3],
         shadows: true,
+        size: 0.0,
+        occlusion: 0.0,
     });
     assert!(world.render(64, 1.0).pixels.iter().all(|pixel| pixel.color == [0.0; 3]));
     world.frame.lights[0].shadows = false;
@@ -151,6 +153,8 @@ fn eye_inside_a_ball_sees_its_far_wall() {
         position: [0.0, 0.0, 1.0],
         color: [49.0; 3],
         shadows: false,
+        size: 0.0,
+        occlusion: 0.0,
     });
     let image = world.render(15, 1.0);
     let centre = image.pixels[7 * 15 + 7];

@@ -259,7 +259,14 @@ impl World {
 
     /// Adds a distant light.
     pub(super) fn sun(&mut self, direction: [f32; 3], color: [f32; 3]) {
-        self.frame.lights.push(LightFrame { distant: true, position: direction, color, shadows: true });
+        self.frame.lights.push(LightFrame {
+            distant: true,
+            position: direction,
+            color,
+            shadows: true,
+            size: 0.0,
+            occlusion: 0.0,
+        });
     }
 
     /// Renders a square picture.
@@ -323,8 +330,14 @@ pub(super) fn mixed() -> World {
     world.medium(Gas::uniform(half, [0.3, 0.4, 0.5], [0.5, 0.5, 0.6], [0.0, 0.01, 0.0], Lighting::Shadowed));
     world.medium(fog([0.2, 0.4, 0.0], 0.9));
     world.sun([0.48, 0.8, 0.36], [2.0, 1.9, 1.7]);
-    let lamp =
-        LightFrame { distant: false, position: [-1.2, 1.5, 1.0], color: [1.0, 0.5, 0.3], shadows: true };
+    let lamp = LightFrame {
+        distant: false,
+        position: [-1.2, 1.5, 1.0],
+        color: [1.0, 0.5, 0.3],
+        shadows: true,
+        size: 0.0,
+        occlusion: 0.0,
+    };
     world.frame.lights.push(lamp);
     world
 }

@@ -1,0 +1,68 @@
+//! How open a surface is: light that reaches it from all sides, as an option of a light.
+//!
+//! At five heights above a point, along its normal, the distance to the nearest solid is compared with the
+//! height. Over a plane they are equal; where another surface is nearer, it hides
+//! `(1 - distance / height) / 2` of the sky, which is 1/2 for a wall that stands at the point and 1 where the place is as
+//! deep inside a solid as the height. The lower heights count for more.
+//!
+//! * an infinite plane is open by 1 (up to rounding), the edge between two walls at a right angle by 1/2,
+//!   as the hemisphere weighted by the cosine is; a place at a distance x from the wall by
+//!   `1 - sum w_i max(0, 1 - x / h_i) / 2`; never outside 0..1 (test `occlusion_of_known_places`)
+//! * the distances are taken as the scene gives them: where a displaced solid's are too small, it is darker
+//! * method: samples along the normal with falling weights (A. Evans, "Fast approximations for global illumination on
+//!   dynamic scenes", SIGGRAPH 2006 course notes), weights that sum to 1
+//!
+//! Twin: `compiler/src/wgsl/render/occlusion.wgsl`.
+
+use super::camera::contains;
+use super::fields::{Fields, Points};
+use super::scene::Integrator;
+use super::surface::Contact;
+use crate::real::{Real, add, scale};
+
+/// Weights of the heights from the lowest, times 31: each counts half as much as the one below.
+const WEIGHTS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
+
+impl<F: Fields> Integrator<'_, F> {
+    /// How open each contact is, 0 to 1, to what is within a distance of it.
+    pub(super) fn openness(&mut self, contacts: &[&Contact<F::Real>], reach: F::Real) -> Vec<F::Real> {
+        let mut hidden = vec![F::Real::ZERO; contacts.len()];
+        for (index, weight) in WEIGHTS.into_iter().enumerate() {
+            let share = F::Real::from_index(index as i32 + 1) / F::Real::from_index(WEIGHTS.len() as i32);
+            let height = share * reach;
+            let distances = self.distances_above(contacts, height);
+            for (hidden, distance) in hidden.iter_mut().zip(distances) {
+                let lack = ((height - distance) / height).max(F::Real::ZERO);
+                let part = (F::Real::from_f32(0.5) * lack).min(F::Real::ONE);
+                *hidden = *hidden + F::Real::from_f32(weight) * part;
+            }
+        }
+        let sum = F::Real::from_f32(WEIGHTS.iter().sum());
+        hidden.into_iter().map(|hidden| F::Real::ONE - (hidden / sum).min(F::Real::ONE)).collect()
+    }
+
+    /// Distance of the nearest solid at a height above each contact; at most the height.
+    fn distances_above(&mut self, contacts: &[&Contact<F::Real>], height: F::Real) -> Vec<F::Real> {
+        let mut distances = vec![height; contacts.len()];
+        let scene = self.scene;
+        for (index, solid) in scene.solids.iter().enumerate() {
+            // A solid whose box is farther than the height hides nothing.
+            let (lo, hi) = (solid.lo.map(|x| x - height), solid.hi.map(|x| x + height));
+            let mut here = Vec::new();
+            let mut points = Points::new();
+            for (which, contact) in contacts.iter().enumerate() {
+                let point = add(contact.position, scale(contact.normal, height));
+                if contains(lo, hi, point) {
+                    here.push(which);
+                    points.push(point);
+                }
+            }
+            let [found] = self.fields.sample(solid.distance, &points);
+            self.stats.surface_evaluations += here.len() as u64;
+            for (which, distance) in here.into_iter().zip(found) {
+                distances[which] = distances[which].min(self.sides[index] * distance);
+            }
+        }
+        distances
+    }
+}

@@ -15,6 +15,7 @@ mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod library;
+mod lights;
 mod mandelbulb;
 mod nearest;
 mod noises;
@@ -44,6 +45,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
     trials.extend(library::trials());
+    trials.extend(lights::trials());
     trials.extend(mandelbulb::trials());
     trials.extend(noises::trials());
     trials.extend(physics::trials());

@@ -6,7 +6,7 @@
 //! so the lit part of the light is the union of nine disks; its area is summed over 19 places. Nothing is drawn by chance,
 //! and the part changes steadily from point to point.
 //!
-//! * error of the part against the area of the disk that hard rays see: 0.06 for an edge of any
+//! * error of the part against the area of the disk that hard rays see: 0.09 for an edge of any
 //!   direction, a convex corner, a strip and balls of 0.3 to 3 times the light's radius, exactly 1 where the
 //!   light is clear and exactly 0 where all nine rays are blocked (test `penumbra_matches_many_rays`)
 //! * a solid's inside is never asked for how deep it is, so that a thin wall hides as well as a thick one
@@ -242,12 +242,12 @@ fn clearance<R: Real>(squared_sine: R, slope: R) -> R {
 }
 
 /// How far to walk: out of the cone's reach at once, else by half the distance, so that the samples are
-/// dense where a solid is near; a fiftieth of the light's radius is sure to be seen.
+/// dense where a solid is near; nothing thinner than 1/500 of the light is sure to be seen.
 fn cone_step<R: Real>(cone: &Cone<R>, around: &Around<R>, t: R) -> R {
     let sine = squared_sine(wide(cone.slope)).sqrt();
     let free = (around.safe - sine * t) / (R::ONE + sine);
     let half = R::from_f32(0.5) * around.safe;
-    let shortest = cone.shadow.stride.max((R::from_f32(0.02) * cone.slope) * t);
+    let shortest = cone.shadow.stride.max((R::from_f32(0.002) * cone.slope) * t);
     free.max(half).min(around.gap).max(shortest)
 }
 

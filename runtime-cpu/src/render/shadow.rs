@@ -74,7 +74,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Whether the ray enters a solid before it reaches the light.
-    fn blocked(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<bool> {
+    pub(super) fn blocked(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<bool> {
         let mut blocked = vec![false; rays.len()];
         if self.scene.solids.is_empty() {
             return blocked;

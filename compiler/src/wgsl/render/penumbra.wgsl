@@ -116,7 +116,7 @@ fn clearance(lowest: f32, slope: f32) -> f32 {
 fn cone_step(near: Around, least_step: f32, slope: f32, t: f32) -> f32 {
     let sine = sqrt(squared_sine(CLEAR * slope));
     let free = (near.safe - (sine * t)) / (1.0 + sine);
-    let shortest = max(least_step, (0.02 * slope) * t);
+    let shortest = max(least_step, (0.002 * slope) * t);
     return max(min(max(free, 0.5 * near.safe), near.gap), shortest);
 }
 

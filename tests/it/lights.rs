@@ -128,8 +128,8 @@ const OCCLUDERS: [(&str, Hits); 5] = [
         hits_box([0.0, 1.0, 0.0], [0.05, 0.05, 2.0], from, to)
     }),
     // One long straight edge.
-    ("box((5, 0.01, 8)).translate((4.5, 1.5, 0))", |from, to| {
-        hits_box([4.5, 1.5, 0.0], [5.0, 0.01, 8.0], from, to)
+    ("box((8, 0.01, 5)).translate((0, 1.5, -5.5))", |from, to| {
+        hits_box([0.0, 1.5, -5.5], [8.0, 0.01, 5.0], from, to)
     }),
 ];
 

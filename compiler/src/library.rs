@@ -5,7 +5,7 @@
 
 mod curve;
 pub(crate) mod math;
-mod noise;
+pub(crate) mod noise;
 mod scene;
 
 use crate::ir::ValueId;

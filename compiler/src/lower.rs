@@ -10,9 +10,10 @@
 //! | `expr`, `keys` | expressions to values |
 //! | `curve` | curves to chains of quadratic pieces |
 //! | `shape`, `tube` | solids: distance, local coordinates, extent |
-//! | `optics` | materials and phase functions |
+//! | `optics`, `cloud` | materials and phase functions |
 //! | `scene` | blocks to the plan of the program |
 
+pub(crate) mod cloud;
 pub(crate) mod curve;
 pub(crate) mod expr;
 mod iterate;

@@ -34,6 +34,8 @@ pub enum ChoiceKind {
     Brush,
     /// The noise of a heterogeneity.
     Noise,
+    /// The noise of a cloud.
+    CloudNoise,
 }
 
 /// A word of a choice.
@@ -64,6 +66,7 @@ impl ChoiceKind {
             Self::Stroke => "stroke",
             Self::Brush => "brush",
             Self::Noise => "noise",
+            Self::CloudNoise => "cloud noise",
         }
     }
 
@@ -109,6 +112,10 @@ impl ChoiceKind {
             Self::Stroke => vec![stroke()],
             Self::Brush => brushes(),
             Self::Noise => vec![bare("perlin", "improved gradient noise")],
+            Self::CloudNoise => vec![
+                bare("perlin", "octaves of improved gradient noise, (1 + fbm) / 2"),
+                bare("gardner", "products of sums of sines"),
+            ],
         }
     }
 }

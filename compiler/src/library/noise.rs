@@ -103,7 +103,7 @@ fn one(lowerer: &mut Lowerer<'_>, span: Span, op: Op, args: &[Value]) -> Lowered
     Ok(Value::Numbers(vec![lowerer.graph.apply_data(op, seed, args[0].numbers())]))
 }
 
-fn fbm(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
+pub(crate) fn fbm(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
     let seed = seed(lowerer, args, 4, span)?;
     let too_many = |octaves| octaves > MAX_OCTAVES;
     let (message, help) =
@@ -161,7 +161,7 @@ fn curl(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value>
 }
 
 /// Most sines of [`gardner`].
-const TERMS: f64 = 7.0;
+pub(crate) const TERMS: f64 = 7.0;
 /// Amplitude of a sine over that of the one before it.
 const FALL: f64 = 0.707;
 
@@ -173,7 +173,7 @@ const FALL: f64 = 0.707;
 ///   value 1. Seeds other than 0 add a phase to every sine.
 /// * source: G. Gardner, "Visual Simulation of Clouds", SIGGRAPH 1985; as in C. Robles et al., "Procedural
 ///   Rendering with Ray Marching" (2022), §4.1, where the index of the frequency in `PY_i` is misprinted
-fn gardner(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
+pub(crate) fn gardner(lowerer: &mut Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Value> {
     let place = lowerer.argument_span(1, span);
     let terms = lowerer.compile_time(args[1].scalar(), "a number of terms", place)?;
     if !(1.0..=TERMS).contains(&terms) {

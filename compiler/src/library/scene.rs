@@ -2,10 +2,12 @@
 //!
 //! | room | holds |
 //! |---|---|
+//! | `clouds` | materials of clouds, on a surface and in a solid |
 //! | `primitives` | shapes that are not made of others |
 //! | `combinations` | unions, intersections, differences |
 //! | `transforms` | shapes moved, bent, repeated, thickened |
 
+mod clouds;
 mod combinations;
 mod primitives;
 mod transforms;
@@ -22,10 +24,9 @@ use vol_language::source::Span;
 use vol_language::ty::Type;
 
 pub(super) fn builtins() -> Vec<Builtin> {
-    [primitives::builtins(), combinations::builtins(), transforms::builtins(), materials(), phases()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let shapes = [primitives::builtins(), combinations::builtins(), transforms::builtins()];
+    let optics = [materials(), clouds::builtins(), phases()];
+    shapes.into_iter().chain(optics).flatten().collect()
 }
 
 /// A whole number within bounds that is known at compile time; `what` is how messages call it.

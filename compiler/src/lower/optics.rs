@@ -1,5 +1,6 @@
 //! Materials and phase functions.
 
+use super::cloud::Cloud;
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
@@ -8,6 +9,7 @@ use crate::ops::Op;
 use crate::program::SURFACE_OUTPUTS;
 use std::f64::consts::PI;
 use std::rc::Rc;
+use vol_language::source::Span;
 
 /// How a surface answers light; colours are functions of the local point.
 #[derive(Clone, Debug)]
@@ -20,6 +22,11 @@ pub(crate) enum Material {
     Normals,
     /// One colour, whatever the light.
     Flat { color: Rc<Closure> },
+    /// A cloud texture over a colour, whatever the light.
+    Cloud2d { cloud: Cloud, behind: Rc<Closure> },
+    /// A cloud in the solid, down to a depth; density at its densest. The object becomes a medium and
+    /// has no surface.
+    Cloud3d { cloud: Cloud, depth: ValueId, density: ValueId },
 }
 
 impl Material {
@@ -29,6 +36,7 @@ impl Material {
         lowerer: &mut Lowerer<'_>,
         point: &Rc<LocalPoint>,
         ambient_light: [ValueId; 3],
+        span: Span,
     ) -> Lowered<Vec<ValueId>> {
         let zero = lowerer.graph.number(0.0);
         let black = [zero; 3];
@@ -44,7 +52,10 @@ impl Material {
                 let diffuse = color(lowerer, diffuse, point)?;
                 (emitted, diffuse, color(lowerer, specular, point)?, *shininess)
             }
-            Self::Normals => (black, black, black, zero),
+            Self::Normals | Self::Cloud3d { .. } => (black, black, black, zero),
+            Self::Cloud2d { cloud, behind } => {
+                (cloud.over(lowerer, behind, point, span)?, black, black, zero)
+            }
             Self::Flat { color: flat } => (color(lowerer, flat, point)?, black, black, zero),
         };
         let mut outputs = Vec::with_capacity(SURFACE_OUTPUTS);
@@ -53,7 +64,7 @@ impl Material {
         Ok(outputs)
     }
 
-    /// The colour that an artist would name: albedo, kd, or the flat colour.
+    /// The colour that an artist would name: albedo, kd, the flat colour or the cloud's.
     pub(crate) fn base_color(
         &self,
         lowerer: &mut Lowerer<'_>,
@@ -62,7 +73,9 @@ impl Material {
         match self {
             Self::Diffuse { albedo: base }
             | Self::Phong { diffuse: base, .. }
-            | Self::Flat { color: base } => color(lowerer, base, point),
+            | Self::Flat { color: base }
+            | Self::Cloud2d { cloud: Cloud { color: base, .. }, .. }
+            | Self::Cloud3d { cloud: Cloud { color: base, .. }, .. } => color(lowerer, base, point),
             Self::Normals => {
                 let zero = lowerer.graph.number(0.0);
                 Ok([zero; 3])

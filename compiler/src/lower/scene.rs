@@ -1,12 +1,13 @@
 //! Blocks to the plan of the program.
 
-use super::optics::{self, Material, Phase};
+mod medium;
+
+use super::optics::Material;
 use super::shape::{self, Shape};
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
-use crate::ops::Op;
-use crate::program::{Camera, Field, Light, LightKind, Lighting, Medium, Object, Render, Slot, Slot3};
+use crate::program::{Camera, Field, Light, LightKind, Medium, Object, Render, Slot, Slot3};
 use std::rc::Rc;
 use vol_language::blocks::BlockKind;
 use vol_language::diag::Diagnostic;
@@ -61,12 +62,12 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
                 plan.lights.extend(keep(lowerer, light));
             }
             BlockKind::Object => {
-                let object = object(lowerer, block, ambient, &mut plan.fields);
-                plan.objects.extend(keep(lowerer, object));
+                let object = object(lowerer, block, ambient, &mut plan);
+                keep(lowerer, object);
             }
             BlockKind::Medium => {
-                let medium = medium(lowerer, block, &mut plan);
-                plan.media.extend(keep(lowerer, medium));
+                let medium = medium::medium(lowerer, block, &mut plan);
+                keep(lowerer, medium);
             }
             BlockKind::Style => lowerer.report(idle_style(block)),
             BlockKind::Camera | BlockKind::Render => {}
@@ -218,12 +219,13 @@ fn key_light(lowerer: &mut Lowerer<'_>) -> Light {
     }
 }
 
+/// A solid, or a medium if its material is a cloud that fills it.
 fn object(
     lowerer: &mut Lowerer<'_>,
     block: &Block,
     ambient: [ValueId; 3],
-    fields: &mut Vec<Field>,
-) -> Lowered<Object> {
+    plan: &mut Plan,
+) -> Lowered<()> {
     let name = &block.name;
     let (shape, span) = solid(lowerer, block, "shape")?;
     let material = match lowerer.entry(block, "material")? {
@@ -234,11 +236,14 @@ fn object(
             Rc::new(Material::Diffuse { albedo: Rc::new(Closure::Constant(Value::Numbers(vec![grey; 3]))) })
         }
     };
+    if let Material::Cloud3d { cloud, depth, density } = &*material {
+        return medium::cloud(lowerer, block, cloud, [*depth, *density], plan);
+    }
     let p = lowerer.position();
     let point = Rc::new(LocalPoint { world: p, region: Rc::clone(&shape) });
     let distance = shape.distance(lowerer, p)?;
     let slope = shape::gradient(lowerer, distance, span)?;
-    let surface = material.surface(lowerer, &point, ambient)?;
+    let surface = material.surface(lowerer, &point, ambient, block.span)?;
     let base = material.base_color(lowerer, &point)?;
     let object = Object {
         name: name.clone(),
@@ -251,11 +256,13 @@ fn object(
         enabled: lowerer.scalar_slot(block, "when", 1.0)?,
         span: block.span,
     };
+    let fields = &mut plan.fields;
     fields.push(Field { name: format!("distance:{name}"), function: object.distance });
     add_field(lowerer, fields, format!("colour:{name}"), &base);
     let local = shape.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
     add_field(lowerer, fields, format!("local:{name}"), &local);
-    Ok(object)
+    plan.objects.push(object);
+    Ok(())
 }
 
 fn solid(lowerer: &mut Lowerer<'_>, block: &Block, key: &str) -> Lowered<(Rc<Shape>, Span)> {
@@ -266,118 +273,6 @@ fn solid(lowerer: &mut Lowerer<'_>, block: &Block, key: &str) -> Lowered<(Rc<Sha
 fn add_field(lowerer: &mut Lowerer<'_>, fields: &mut Vec<Field>, name: String, outputs: &[ValueId]) {
     let function = lowerer.function(&name, 3, outputs);
     fields.push(Field { name, function });
-}
-
-fn medium(lowerer: &mut Lowerer<'_>, block: &Block, plan: &mut Plan) -> Lowered<Medium> {
-    let name = &block.name;
-    let (region, span) = solid(lowerer, block, "region")?;
-    let p = lowerer.position();
-    let point = Rc::new(LocalPoint { world: p, region: Rc::clone(&region) });
-    let distance = region.distance(lowerer, p)?;
-    let matter = matter(lowerer, block, &point)?;
-    if matter.is_empty(lowerer) {
-        plan.report.push(format!("medium `{name}` neither scatters, absorbs nor emits"));
-    }
-    let phase = match lowerer.entry(block, "phase")? {
-        Some((Value::Phase(phase), _)) => phase,
-        Some((other, _)) => unreachable!("the checker gives a phase function, not {other:?}"),
-        None => Rc::new(Phase::Isotropic),
-    };
-    let phase = phase.lower(&mut lowerer.graph);
-    let interior = [matter.scattering, matter.extinction, matter.emission].concat();
-    let medium = Medium {
-        name: name.clone(),
-        region: lowerer.function(&format!("region:{name}"), 3, &[distance]),
-        interior: lowerer.function(&format!("interior:{name}"), 3, &interior),
-        extinction: lowerer.function(&format!("extinction:{name}"), 3, &matter.extinction),
-        phase: lowerer.function(&format!("phase:{name}"), 2, &[phase]),
-        lighting: lighting(lowerer, block)?,
-        extent: region.extent(lowerer, span)?,
-        enabled: lowerer.scalar_slot(block, "when", 1.0)?,
-        span: block.span,
-    };
-    plan.fields.push(Field { name: format!("distance:{name}"), function: medium.region });
-    let zero = lowerer.graph.number(0.0);
-    let outside = lowerer.graph.apply(Op::Less, &[zero, distance]);
-    let density = lowerer.graph.select(outside, zero, matter.density);
-    add_field(lowerer, &mut plan.fields, format!("density:{name}"), &[density]);
-    add_field(lowerer, &mut plan.fields, format!("colour:{name}"), &matter.scatter);
-    let local = region.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
-    add_field(lowerer, &mut plan.fields, format!("local:{name}"), &local);
-    Ok(medium)
-}
-
-/// Optical quantities of a medium at a point inside its region.
-struct Matter {
-    density: ValueId,
-    scatter: [ValueId; 3],
-    scattering: [ValueId; 3],
-    extinction: [ValueId; 3],
-    emission: [ValueId; 3],
-}
-
-impl Matter {
-    fn is_empty(&self, lowerer: &Lowerer<'_>) -> bool {
-        let zero = |&v: &ValueId| lowerer.graph.constant(v) == Some(0.0);
-        self.extinction.iter().all(zero) && self.emission.iter().all(zero)
-    }
-}
-
-fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> Lowered<Matter> {
-    let zero = lowerer.graph.number(0.0);
-    let density = lowerer.closure(block, "density", 1.0, 1)?;
-    let density = lowerer.call(&density, &[Value::Local(Rc::clone(point))])?.scalar();
-    let density = lowerer.graph.max(density, zero);
-    let density = conserved(lowerer, block, point, density)?;
-    let mut coefficient = |key: &str, default: f64| -> Lowered<[ValueId; 3]> {
-        let closure = lowerer.closure(block, key, default, 3)?;
-        let given = optics::color(lowerer, &closure, point)?;
-        Ok(given.map(|c| lowerer.graph.max(c, zero)))
-    };
-    let scatter = coefficient("scatter", 1.0)?;
-    let absorb = coefficient("absorb", 0.0)?;
-    let emit = coefficient("emit", 0.0)?;
-    let graph = &mut lowerer.graph;
-    let total = [0, 1, 2].map(|i| graph.add(scatter[i], absorb[i]));
-    Ok(Matter {
-        density,
-        scatter,
-        scattering: scatter.map(|c| graph.mul(density, c)),
-        extinction: total.map(|c| graph.mul(density, c)),
-        emission: emit.map(|c| graph.mul(density, c)),
-    })
-}
-
-/// The density, divided by the stretch of volume where a key of the medium or its tube asks for that:
-/// then it is the density of the unit cylinder, and the mass does not depend on the tube's shape.
-fn conserved(
-    lowerer: &mut Lowerer<'_>,
-    block: &Block,
-    point: &Rc<LocalPoint>,
-    density: ValueId,
-) -> Lowered<ValueId> {
-    let asked = match lowerer.entry(block, "conserve_mass")? {
-        Some((value, span)) => lowerer.compile_time(value.scalar(), "`conserve_mass`", span)? != 0.0,
-        None => point.region.conserves_mass(),
-    };
-    if !asked {
-        return Ok(density);
-    }
-    let field = vol_language::hir::LocalField::Stretch;
-    let stretch = point.region.local_field(lowerer, point.world, field, block.span)?;
-    Ok(lowerer.graph.div(density, stretch[0]))
-}
-
-fn lighting(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Lighting> {
-    Ok(match lowerer.entry(block, "lighting")? {
-        None => Lighting::Shadowed,
-        Some((Value::String(name), _)) => match &*name {
-            "none" => Lighting::None,
-            "unshadowed" => Lighting::Unshadowed,
-            _ => Lighting::Shadowed,
-        },
-        Some((other, _)) => unreachable!("the checker gives a string, not {other:?}"),
-    })
 }
 
 /// Top-level functions of one position become fields that can be asked for by name.

@@ -1,0 +1,186 @@
+//! Media: blocks of their own, and clouds that fill an object.
+
+use super::super::cloud::Cloud;
+use super::super::optics::{self, Phase};
+use super::super::value::{LocalPoint, Value};
+use super::super::{Lowered, Lowerer};
+use super::{Plan, add_field, solid};
+use crate::ir::ValueId;
+use crate::ops::Op;
+use crate::program::{Field, Lighting, Medium};
+use std::rc::Rc;
+use vol_language::hir::Block;
+use vol_language::source::Span;
+
+/// The medium of a block.
+pub(super) fn medium(lowerer: &mut Lowerer<'_>, block: &Block, plan: &mut Plan) -> Lowered<()> {
+    let (region, span) = solid(lowerer, block, "region")?;
+    let point = Rc::new(LocalPoint { world: lowerer.position(), region });
+    let matter = matter(lowerer, block, &point)?;
+    if matter.is_empty(lowerer) {
+        plan.report.push(format!("medium `{}` neither scatters, absorbs nor emits", block.name));
+    }
+    let phase = match lowerer.entry(block, "phase")? {
+        Some((Value::Phase(phase), _)) => phase,
+        Some((other, _)) => unreachable!("the checker gives a phase function, not {other:?}"),
+        None => Rc::new(Phase::Isotropic),
+    };
+    let lighting = lighting(lowerer, block)?;
+    fill(lowerer, block, &point, span, Filling { matter, phase, lighting }, plan)
+}
+
+/// The medium that fills a solid as a cloud: absorbs and glows, down to a depth, and answers no light.
+pub(super) fn cloud(
+    lowerer: &mut Lowerer<'_>,
+    block: &Block,
+    cloud: &Cloud,
+    [depth, most]: [ValueId; 2],
+    plan: &mut Plan,
+) -> Lowered<()> {
+    let (region, span) = solid(lowerer, block, "shape")?;
+    let point = Rc::new(LocalPoint { world: lowerer.position(), region });
+    let distance = point.region.distance(lowerer, point.world)?;
+    let amount = cloud.amount(lowerer, &point, block.span)?;
+    let color = optics::color(lowerer, &cloud.color, &point)?;
+    let graph = &mut lowerer.graph;
+    let (zero, one) = (graph.number(0.0), graph.number(1.0));
+    // What is left of cloud and colour at this depth: 1 at the surface.
+    let thinnest = graph.number(1e-6);
+    let depth = graph.max(depth, thinnest);
+    let gone = graph.div(distance, depth);
+    let left = graph.add(one, gone);
+    let left = graph.max(left, zero);
+    let left = graph.min(left, one);
+    let most = graph.max(most, zero);
+    let dense = graph.mul(most, amount);
+    let density = graph.mul(dense, left);
+    let glow = graph.mul(density, left);
+    let matter = Matter {
+        density,
+        scatter: color,
+        scattering: [zero; 3],
+        extinction: [density; 3],
+        emission: color.map(|c| {
+            let c = graph.max(c, zero);
+            graph.mul(glow, c)
+        }),
+    };
+    let filling = Filling { matter, phase: Rc::new(Phase::Isotropic), lighting: Lighting::None };
+    fill(lowerer, block, &point, span, filling, plan)
+}
+
+/// What a medium is, beside its region.
+struct Filling {
+    matter: Matter,
+    phase: Rc<Phase>,
+    lighting: Lighting,
+}
+
+/// Adds a medium and its fields.
+fn fill(
+    lowerer: &mut Lowerer<'_>,
+    block: &Block,
+    point: &LocalPoint,
+    span: Span,
+    Filling { matter, phase, lighting }: Filling,
+    plan: &mut Plan,
+) -> Lowered<()> {
+    let (name, region, p) = (&block.name, &point.region, point.world);
+    let distance = region.distance(lowerer, p)?;
+    let phase = phase.lower(&mut lowerer.graph);
+    let interior = [matter.scattering, matter.extinction, matter.emission].concat();
+    let medium = Medium {
+        name: name.clone(),
+        region: lowerer.function(&format!("region:{name}"), 3, &[distance]),
+        interior: lowerer.function(&format!("interior:{name}"), 3, &interior),
+        extinction: lowerer.function(&format!("extinction:{name}"), 3, &matter.extinction),
+        phase: lowerer.function(&format!("phase:{name}"), 2, &[phase]),
+        lighting,
+        extent: region.extent(lowerer, span)?,
+        enabled: lowerer.scalar_slot(block, "when", 1.0)?,
+        span: block.span,
+    };
+    plan.fields.push(Field { name: format!("distance:{name}"), function: medium.region });
+    let zero = lowerer.graph.number(0.0);
+    let outside = lowerer.graph.apply(Op::Less, &[zero, distance]);
+    let density = lowerer.graph.select(outside, zero, matter.density);
+    add_field(lowerer, &mut plan.fields, format!("density:{name}"), &[density]);
+    add_field(lowerer, &mut plan.fields, format!("colour:{name}"), &matter.scatter);
+    let local = region.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
+    add_field(lowerer, &mut plan.fields, format!("local:{name}"), &local);
+    plan.media.push(medium);
+    Ok(())
+}
+
+/// Optical quantities of a medium at a point inside its region.
+struct Matter {
+    density: ValueId,
+    scatter: [ValueId; 3],
+    scattering: [ValueId; 3],
+    extinction: [ValueId; 3],
+    emission: [ValueId; 3],
+}
+
+impl Matter {
+    fn is_empty(&self, lowerer: &Lowerer<'_>) -> bool {
+        let zero = |&v: &ValueId| lowerer.graph.constant(v) == Some(0.0);
+        self.extinction.iter().all(zero) && self.emission.iter().all(zero)
+    }
+}
+
+fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> Lowered<Matter> {
+    let zero = lowerer.graph.number(0.0);
+    let density = lowerer.closure(block, "density", 1.0, 1)?;
+    let density = lowerer.call(&density, &[Value::Local(Rc::clone(point))])?.scalar();
+    let density = lowerer.graph.max(density, zero);
+    let density = conserved(lowerer, block, point, density)?;
+    let mut coefficient = |key: &str, default: f64| -> Lowered<[ValueId; 3]> {
+        let closure = lowerer.closure(block, key, default, 3)?;
+        let given = optics::color(lowerer, &closure, point)?;
+        Ok(given.map(|c| lowerer.graph.max(c, zero)))
+    };
+    let scatter = coefficient("scatter", 1.0)?;
+    let absorb = coefficient("absorb", 0.0)?;
+    let emit = coefficient("emit", 0.0)?;
+    let graph = &mut lowerer.graph;
+    let total = [0, 1, 2].map(|i| graph.add(scatter[i], absorb[i]));
+    Ok(Matter {
+        density,
+        scatter,
+        scattering: scatter.map(|c| graph.mul(density, c)),
+        extinction: total.map(|c| graph.mul(density, c)),
+        emission: emit.map(|c| graph.mul(density, c)),
+    })
+}
+
+/// The density, divided by the stretch of volume where a key of the medium or its tube asks for that:
+/// then it is the density of the unit cylinder, and the mass does not depend on the tube's shape.
+fn conserved(
+    lowerer: &mut Lowerer<'_>,
+    block: &Block,
+    point: &Rc<LocalPoint>,
+    density: ValueId,
+) -> Lowered<ValueId> {
+    let asked = match lowerer.entry(block, "conserve_mass")? {
+        Some((value, span)) => lowerer.compile_time(value.scalar(), "`conserve_mass`", span)? != 0.0,
+        None => point.region.conserves_mass(),
+    };
+    if !asked {
+        return Ok(density);
+    }
+    let field = vol_language::hir::LocalField::Stretch;
+    let stretch = point.region.local_field(lowerer, point.world, field, block.span)?;
+    Ok(lowerer.graph.div(density, stretch[0]))
+}
+
+fn lighting(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Lighting> {
+    Ok(match lowerer.entry(block, "lighting")? {
+        None => Lighting::Shadowed,
+        Some((Value::String(name), _)) => match &*name {
+            "none" => Lighting::None,
+            "unshadowed" => Lighting::Unshadowed,
+            _ => Lighting::Shadowed,
+        },
+        Some((other, _)) => unreachable!("the checker gives a string, not {other:?}"),
+    })
+}

@@ -57,7 +57,7 @@ fn empty(medium: &Medium, interior: &Function, bounds: Aabb, frame: &Frame) -> O
     let label = "it neither scatters, absorbs nor emits at any point";
     Some(
         Diagnostic::warning("W0402", message, medium.span, label)
-            .with_help("raise `density`; below 0 it counts as 0, and noise is negative half of the time"),
+            .with_help("raise `density`, or lower the `cutoff` of a cloud; below 0 a density counts as 0, and noise is negative half of the time"),
     )
 }
 
@@ -128,7 +128,11 @@ mod tests {
 
     /// Codes of the warnings about a medium with these entries.
     fn codes(entries: &str) -> Vec<&'static str> {
-        let text = format!("medium m {{ region: sphere(1), {entries} }}");
+        codes_of(&format!("medium m {{ region: sphere(1), {entries} }}"))
+    }
+
+    /// Codes of the warnings about a scene.
+    fn codes_of(text: &str) -> Vec<&'static str> {
         let library = crate::library::library();
         let (scene, found) = vol_language::analyse(&SourceFile::new("test.vol", text), &library);
         assert_eq!(found, []);
@@ -148,6 +152,18 @@ mod tests {
         assert_eq!(codes("density: q => perlin(3 * q.local) - 0.3"), [""; 0]);
         assert_eq!(codes("scatter: 0"), ["W0402"]);
         assert_eq!(codes("scatter: 0, emit: 1"), [""; 0]);
+    }
+
+    #[test]
+    fn empty_clouds_are_named() {
+        let cloud =
+            |more: &str| codes_of(&format!("object m {{ shape: sphere(1), material: cloud_3d(1{more}) }}"));
+        assert_eq!(cloud(", cutoff: 1"), ["W0402"]);
+        assert_eq!(cloud(", density: 0"), ["W0402"]);
+        assert_eq!(cloud(", noise: gardner, cutoff: 1.2"), ["W0402"]);
+        assert_eq!(cloud(""), [""; 0]);
+        assert_eq!(cloud(", noise: gardner"), [""; 0]);
+        assert_eq!(cloud(", offset: (1e6, 0, 0)"), ["W0403"]);
     }
 
     #[test]

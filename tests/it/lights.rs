@@ -1,17 +1,10 @@
 //! Soft shadows and occlusion against geometry, on both backends: the part of a light that is seen,
 //! counted with many straight rays in f64, and places whose openness is a formula.
 
-use crate::support::{compile, ensure, frame, render};
+use crate::support::{Body, Draw, compile, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::PI;
-use vol_compiler::frame::{CameraFrame, Frame, Image, Job};
-use vol_compiler::program::Program;
-
-/// Draws a frame of a program.
-type Draw<'a> = dyn Fn(&Program, &Frame, &Job) -> Result<Image, Failed> + 'a;
-
-/// A check of a backend.
-type Body = fn(&Draw<'_>) -> Result<(), Failed>;
+use vol_compiler::frame::{CameraFrame, Job};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -24,30 +17,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         ("phong_has_three_terms", phong_has_three_terms),
         ("normals_flat_and_fields_of_color", normals_flat_and_fields_of_color),
     ];
-    let mut trials = Vec::new();
-    for (name, body) in bodies {
-        trials.push(Trial::test(format!("lights::{name}__cpu"), move || {
-            body(&|program, frame, job| render(program, frame, job, 2))
-        }));
-        #[cfg(feature = "gpu")]
-        trials.push(crate::gpu_device::gpu_trial(&format!("lights::{name}"), move |gpu| {
-            body(&|program, frame, job| draw_on_gpu(gpu, program, frame, job))
-        }));
-    }
-    trials
-}
-
-#[cfg(feature = "gpu")]
-fn draw_on_gpu(
-    gpu: &vol_runtime_gpu::Gpu,
-    program: &Program,
-    frame: &Frame,
-    job: &Job,
-) -> Result<Image, Failed> {
-    let renderer = vol_runtime_gpu::Renderer::new(gpu, program)?;
-    let never = std::sync::atomic::AtomicBool::new(false);
-    let drawn = renderer.render(gpu, program, frame, job, &|_| {}, &never)?;
-    Ok(drawn.ok_or("the render was cancelled by nobody")?.0)
+    bodies.into_iter().flat_map(|(name, body)| on_both(&format!("lights::{name}"), body)).collect()
 }
 
 type V = [f64; 3];

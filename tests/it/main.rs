@@ -6,6 +6,7 @@
 mod architecture;
 mod canary;
 mod cli;
+mod clouds;
 mod differential;
 mod docs;
 mod examples;
@@ -38,6 +39,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(architecture::trials());
     trials.extend(canary::trials());
     trials.extend(cli::trials());
+    trials.extend(clouds::trials());
     trials.extend(differential::trials());
     trials.extend(docs::trials());
     trials.extend(examples::trials());

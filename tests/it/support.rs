@@ -1,6 +1,6 @@
 //! Scenes and functions made ready for tests.
 
-use libtest_mimic::Failed;
+use libtest_mimic::{Failed, Trial};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{Frame, Image, Job, Sampling};
@@ -103,6 +103,37 @@ pub(crate) fn render(program: &Program, frame: &Frame, job: &Job, threads: usize
     vol_runtime_cpu::render(program, frame, job, Some(threads), &|_| {}, &cancelled)
         .map(|(image, _)| image)
         .ok_or_else(|| "the render was cancelled by nobody".into())
+}
+
+/// Draws a frame of a program.
+pub(crate) type Draw<'a> = dyn Fn(&Program, &Frame, &Job) -> Result<Image, Failed> + 'a;
+
+/// A check of a backend.
+pub(crate) type Body = fn(&Draw<'_>) -> Result<(), Failed>;
+
+/// A check as a trial of each backend.
+pub(crate) fn on_both(name: &str, body: Body) -> Vec<Trial> {
+    vec![
+        Trial::test(format!("{name}__cpu"), move || {
+            body(&|program, frame, job| render(program, frame, job, 2))
+        }),
+        #[cfg(feature = "gpu")]
+        crate::gpu_device::gpu_trial(name, move |gpu| {
+            body(&|program, frame, job| draw_on_gpu(gpu, program, frame, job))
+        }),
+    ]
+}
+
+#[cfg(feature = "gpu")]
+fn draw_on_gpu(
+    gpu: &vol_runtime_gpu::Gpu,
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+) -> Result<Image, Failed> {
+    let renderer = vol_runtime_gpu::Renderer::new(gpu, program)?;
+    let drawn = renderer.render(gpu, program, frame, job, &|_| {}, &AtomicBool::new(false))?;
+    Ok(drawn.ok_or("the render was cancelled by nobody")?.0)
 }
 
 /// A scene text rendered on the CPU with a given step.

@@ -41,7 +41,12 @@ pub(crate) struct Cloud {
 
 impl Cloud {
     /// `max(0, T - cutoff) / (1 - cutoff)` at a local point, 0..1.
-    pub(crate) fn amount(&self, lowerer: &mut Lowerer<'_>, point: &LocalPoint, span: Span) -> Lowered<ValueId> {
+    pub(crate) fn amount(
+        &self,
+        lowerer: &mut Lowerer<'_>,
+        point: &LocalPoint,
+        span: Span,
+    ) -> Lowered<ValueId> {
         let texture = self.texture(lowerer, point, span)?;
         let graph = &mut lowerer.graph;
         let (zero, one) = (graph.number(0.0), graph.number(1.0));
@@ -71,7 +76,8 @@ impl Cloud {
             graph.mul(scale, moved)
         });
         let place = Value::Numbers(place.to_vec());
-        let number = |lowerer: &mut Lowerer<'_>, number: f64| Value::Numbers(vec![lowerer.graph.number(number)]);
+        let number =
+            |lowerer: &mut Lowerer<'_>, number: f64| Value::Numbers(vec![lowerer.graph.number(number)]);
         let octaves = number(lowerer, f64::from(self.octaves));
         let seed = Value::Numbers(vec![self.seed]);
         match self.pattern {

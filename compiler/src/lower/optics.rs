@@ -64,17 +64,18 @@ impl Material {
         Ok(outputs)
     }
 
-    /// The colour that an artist would name: albedo, kd, the flat colour or the cloud's.
+    /// The colour that an artist would name: albedo, kd, the flat colour or that of the cloud.
     pub(crate) fn base_color(
         &self,
         lowerer: &mut Lowerer<'_>,
         point: &Rc<LocalPoint>,
+        span: Span,
     ) -> Lowered<[ValueId; 3]> {
         match self {
+            Self::Cloud2d { cloud, behind } => cloud.over(lowerer, behind, point, span),
             Self::Diffuse { albedo: base }
             | Self::Phong { diffuse: base, .. }
             | Self::Flat { color: base }
-            | Self::Cloud2d { cloud: Cloud { color: base, .. }, .. }
             | Self::Cloud3d { cloud: Cloud { color: base, .. }, .. } => color(lowerer, base, point),
             Self::Normals => {
                 let zero = lowerer.graph.number(0.0);

@@ -220,12 +220,7 @@ fn key_light(lowerer: &mut Lowerer<'_>) -> Light {
 }
 
 /// A solid, or a medium if its material is a cloud that fills it.
-fn object(
-    lowerer: &mut Lowerer<'_>,
-    block: &Block,
-    ambient: [ValueId; 3],
-    plan: &mut Plan,
-) -> Lowered<()> {
+fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan: &mut Plan) -> Lowered<()> {
     let name = &block.name;
     let (shape, span) = solid(lowerer, block, "shape")?;
     let material = match lowerer.entry(block, "material")? {
@@ -244,7 +239,7 @@ fn object(
     let distance = shape.distance(lowerer, p)?;
     let slope = shape::gradient(lowerer, distance, span)?;
     let surface = material.surface(lowerer, &point, ambient, block.span)?;
-    let base = material.base_color(lowerer, &point)?;
+    let base = material.base_color(lowerer, &point, block.span)?;
     let object = Object {
         name: name.clone(),
         distance: lowerer.function(&format!("distance:{name}"), 3, &[distance]),

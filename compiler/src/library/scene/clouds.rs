@@ -70,7 +70,9 @@ fn params(more: Vec<Parameter>) -> Vec<Parameter> {
 
 /// The cloud of a call's first arguments.
 fn cloud(lowerer: &Lowerer<'_>, span: Span, args: &[Value]) -> Lowered<Cloud> {
-    let Value::String(word) = &args[1] else { unreachable!("the checker gives a word where one is asked for") };
+    let Value::String(word) = &args[1] else {
+        unreachable!("the checker gives a word where one is asked for")
+    };
     let (pattern, most) = match &**word {
         "gardner" => (Pattern::Gardner, TERMS as u32),
         _ => (Pattern::Perlin, MAX_OCTAVES as u32),

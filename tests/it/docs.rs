@@ -106,6 +106,7 @@ fn table(name: &str) -> Option<String> {
     Some(match name {
         "ease" => words(&[ChoiceKind::Ease]),
         "lighting" => words(&[ChoiceKind::Lighting]),
+        "cloud_noise" => words(&[ChoiceKind::CloudNoise]),
         "words" => words(&[
             ChoiceKind::HoleFilling,
             ChoiceKind::Layer,

@@ -97,7 +97,7 @@ fn depth_of_a_slab(draw: &Draw<'_>) -> Result<(), Failed> {
          render {{ background: (0, 0, 1) }}"
     );
     let pixel = picture(draw, &text, [3, 3], 0.004)?.pixels[4];
-    let transmittance = (-2.0 * density * (half - half * half / (2.0 * depth)) as f64).exp();
+    let transmittance = f64::exp(-2.0 * density * (half - half * half / (2.0 * depth)));
     // Emission by many small steps.
     const STEPS: usize = 200_000;
     let (mut through, mut glow) = (1.0f64, 0.0f64);

@@ -3,7 +3,7 @@
 
 use crate::support::{Body, Draw, compile, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use vol_compiler::frame::{CameraFrame, Job, Sampling};
 
 /// The trials of this file.
@@ -203,6 +203,9 @@ fn lamp_before_a_wall_is_whole(draw: &Draw<'_>) -> Result<(), Failed> {
     Ok(())
 }
 
+/// Distance of the nearest surface at a height above a place.
+type Distance = fn(V, f64) -> f64;
+
 /// One minus the weighted lack of distance, of a distance per height.
 fn openness(reach: f64, distance: impl Fn(f64) -> f64) -> f64 {
     let hidden = (1..=5).map(|i| {
@@ -214,15 +217,13 @@ fn openness(reach: f64, distance: impl Fn(f64) -> f64) -> f64 {
 
 fn occlusion_of_known_places(draw: &Draw<'_>) -> Result<(), Failed> {
     const REACH: f64 = 0.6;
-    let half = std::f64::consts::FRAC_1_SQRT_2;
     // A plane, a wall at a right angle, a wall that leans over the floor by 45 degrees.
-    let walls: [(&str, Box<dyn Fn(V, f64) -> f64>); 3] = [
-        ("", Box::new(|_, height| height)),
-        ("object wall { shape: plane((1, 0, 0)) }", Box::new(|place: V, height: f64| height.min(place[0]))),
-        (
-            "object wall { shape: plane((1, -1, 0)) }",
-            Box::new(move |place: V, height: f64| height.min(half * (place[0] - height))),
-        ),
+    let walls: [(&str, Distance); 3] = [
+        ("", |_, height| height),
+        ("object wall { shape: plane((1, 0, 0)) }", |place, height| height.min(place[0])),
+        ("object wall { shape: plane((1, -1, 0)) }", |place, height| {
+            height.min(FRAC_1_SQRT_2 * (place[0] - height))
+        }),
     ];
     for (wall, distance) in walls {
         let text = format!(
@@ -241,7 +242,7 @@ fn occlusion_of_known_places(draw: &Draw<'_>) -> Result<(), Failed> {
         ensure(near > 20, || format!("{wall}: only {near} places near the wall"))?;
     }
     // At the foot of a wall half is hidden, under a wall that leans over more.
-    let (corner, crevice) = (openness(REACH, |_| 0.0), openness(REACH, |height| -half * height));
+    let (corner, crevice) = (openness(REACH, |_| 0.0), openness(REACH, |height| -FRAC_1_SQRT_2 * height));
     ensure((corner - 0.5).abs() < 1e-12 && crevice < 0.2, || format!("{corner}, {crevice}"))
 }
 

@@ -23,17 +23,18 @@ use super::shadow::ShadowRay;
 use super::stride::Ahead;
 use super::surface::{EPSILON, MAX_STEPS};
 use crate::real::{Real, Vec3, add, length, scale, sub};
+use std::f32::consts::FRAC_1_SQRT_2;
 
 /// Directions from the centre of the light to the rim.
 const RIM: [[f32; 2]; 8] = [
     [1.0, 0.0],
-    [0.707_106_8, 0.707_106_8],
+    [FRAC_1_SQRT_2, FRAC_1_SQRT_2],
     [0.0, 1.0],
-    [-0.707_106_8, 0.707_106_8],
+    [-FRAC_1_SQRT_2, FRAC_1_SQRT_2],
     [-1.0, 0.0],
-    [-0.707_106_8, -0.707_106_8],
+    [-FRAC_1_SQRT_2, -FRAC_1_SQRT_2],
     [0.0, -1.0],
-    [0.707_106_8, -0.707_106_8],
+    [FRAC_1_SQRT_2, -FRAC_1_SQRT_2],
 ];
 
 /// Where the lit part is asked for, in radii of the light: the centre and rings of 6 and 12, each place
@@ -264,7 +265,7 @@ fn least<R: Real>(a: [R; 2], b: [R; 2], c: [R; 2]) -> R {
     let fall = (b[1] - a[1]) / (b[0] - a[0]);
     let rise = (c[1] - b[1]) / (c[0] - b[0]);
     let bend = (rise - fall) / (c[0] - a[0]);
-    if !(bend > R::ZERO) {
+    if bend <= R::ZERO {
         return b[1];
     }
     let half = R::from_f32(0.5);

@@ -130,7 +130,7 @@ fn least(a: vec2f, b: vec2f, c: vec2f) -> f32 {
     let fall = (b.y - a.y) / (b.x - a.x);
     let rise = (c.y - b.y) / (c.x - b.x);
     let bend = (rise - fall) / (c.x - a.x);
-    if (!(bend > 0.0)) {
+    if (bend <= 0.0) {
         return b.y;
     }
     let place = (0.5 * (a.x + b.x)) - (0.5 * (fall / bend));

@@ -305,18 +305,17 @@ impl Kind {
         match self {
             Self::Primitive(primitive) => primitive.check_sizes(lowerer, span),
             Self::Implicit { half, .. } => {
-                lowerer.refuse(half, |x| x <= 0.0, "the bounds of a field must be more than 0", span)
+                let place = lowerer.argument_span(1, span);
+                lowerer.refuse(half, |x| x <= 0.0, "the bounds of a field must be more than 0", place)
             }
             Self::Transformed { transform, .. } => transform.check_sizes(lowerer, span),
-            Self::Shell { half, .. } => {
-                lowerer.refuse(&[*half], |x| x < 0.0, "a thickness must be at least 0", span)
-            }
             Self::Tube(_)
             | Self::Union { .. }
             | Self::Intersection { .. }
             | Self::Difference { .. }
             | Self::Repeated { .. }
             | Self::Rounded { .. }
+            | Self::Shell { .. }
             | Self::Displaced { .. } => Ok(()),
         }
     }

@@ -21,7 +21,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             Type::Shape,
             "all points of any shape; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
-                let blend = blend(lowerer, &a[1..], span)?;
+                let blend = blend(lowerer, a, 1, span)?;
                 Shape::value(Kind::Union { shapes: shape_list(&a[0]), blend }, lowerer, span)
             },
         ),
@@ -31,7 +31,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             Type::Shape,
             "the points common to all shapes; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
-                let blend = blend(lowerer, &a[1..], span)?;
+                let blend = blend(lowerer, a, 1, span)?;
                 Shape::value(Kind::Intersection { shapes: shape_list(&a[0]), blend }, lowerer, span)
             },
         ),
@@ -41,7 +41,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             Type::Shape,
             "the points of the first shape that are not in the second; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
-                let blend = blend(lowerer, &a[2..], span)?;
+                let blend = blend(lowerer, a, 2, span)?;
                 Shape::value(
                     Kind::Difference { from: a[0].shape(), what: a[1].shape(), blend },
                     lowerer,
@@ -71,11 +71,15 @@ fn shape_list(value: &Value) -> Vec<Rc<Shape>> {
 /// Most steps of a stepped blend.
 const MOST_STEPS: u32 = 1000;
 
-/// The blend that the arguments ask for; none where the widths are a constant 0.
-fn blend(lowerer: &Lowerer<'_>, args: &[Value], span: Span) -> Lowered<Blend> {
-    let widths = [args[0].scalar(), args[1].scalar(), args[2].scalar()];
-    lowerer.refuse(&widths, |k| k < 0.0, "the width of a blend must be at least 0", span)?;
-    let steps = whole(lowerer, args[3].scalar(), [1, MOST_STEPS], "the number of steps", span)?;
+/// The blend that the arguments from the `first` on ask for; none where the widths are a constant 0.
+fn blend(lowerer: &Lowerer<'_>, args: &[Value], first: usize, span: Span) -> Lowered<Blend> {
+    let widths = [0, 1, 2].map(|i| args[first + i].scalar());
+    for (i, width) in widths.iter().enumerate() {
+        let place = lowerer.argument_span(first + i, span);
+        lowerer.refuse(&[*width], |k| k < 0.0, "the width of a blend must be at least 0", place)?;
+    }
+    let place = lowerer.argument_span(first + 3, span);
+    let steps = whole(lowerer, args[first + 3].scalar(), [1, MOST_STEPS], "the number of steps", place)?;
     let [smooth, chamfer, stairs] = widths.map(|width| lowerer.graph.constant(width) != Some(0.0));
     match (smooth, chamfer, stairs) {
         (false, false, false) => Ok(Blend::Sharp),

@@ -116,7 +116,8 @@ fn pointed() -> Vec<Builtin> {
             Type::Shape,
             "upright regular prism with 3 to 64 sides around the y axis, one corner above the x axis, radius to the corners; exact",
             |lowerer, span, a| {
-                let sides = whole(lowerer, a[0].scalar(), [3, 64], "the number of sides", span)?;
+                let place = lowerer.argument_span(0, span);
+                let sides = whole(lowerer, a[0].scalar(), [3, 64], "the number of sides", place)?;
                 let (radius, half_height) = (a[1].scalar(), a[2].scalar());
                 solid(lowerer, span, Primitive::Prism { sides, radius, half_height })
             },
@@ -151,6 +152,9 @@ fn pointed() -> Vec<Builtin> {
             Type::Shape,
             "round plate across the y axis: all points within half the thickness of the flat disk; exact",
             |lowerer, span, a| {
+                let place = lowerer.argument_span(1, span);
+                let message = "a thickness must be at least 0";
+                lowerer.refuse(&[a[1].scalar()], |x| x < 0.0, message, place)?;
                 let half = lowerer.graph.number(0.5);
                 let rim = lowerer.graph.mul(a[1].scalar(), half);
                 solid(lowerer, span, Primitive::Disk { radius: a[0].scalar(), rim })

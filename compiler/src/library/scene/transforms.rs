@@ -156,8 +156,9 @@ fn folds() -> Vec<Builtin> {
             Type::Shape,
             "count copies around the y axis, the first where the shape is, near the x axis; overlap is into how many further sectors the shape reaches",
             |lowerer, span, a| {
-                let count = whole(lowerer, a[1].scalar(), [1, MOST_COPIES], "the number of copies", span)?;
-                let overlap = whole(lowerer, a[2].scalar(), [0, MOST_COPIES], "the overlap", span)?;
+                let [first, second] = [1, 2].map(|i| lowerer.argument_span(i, span));
+                let count = whole(lowerer, a[1].scalar(), [1, MOST_COPIES], "the number of copies", first)?;
+                let overlap = whole(lowerer, a[2].scalar(), [0, MOST_COPIES], "the overlap", second)?;
                 let copies = Copies::Around { count, overlap };
                 Shape::value(Kind::Repeated { child: a[0].shape(), copies }, lowerer, span)
             },
@@ -167,11 +168,12 @@ fn folds() -> Vec<Builtin> {
 
 fn repeat(lowerer: &mut Lowerer<'_>, span: Span, a: &[Value]) -> Lowered<Value> {
     let (shape, period, counts) = (a[0].shape(), a[1].vec3(), a[2].vec3());
-    lowerer.refuse(&period, |x| x < 0.0, "a period must be at least 0", span)?;
-    let overlap = whole(lowerer, a[3].scalar(), [0, MOST_OVERLAP], "the overlap", span)?;
+    let places = [1, 2, 3].map(|i| lowerer.argument_span(i, span));
+    lowerer.refuse(&period, |x| x < 0.0, "a period must be at least 0", places[0])?;
+    let overlap = whole(lowerer, a[3].scalar(), [0, MOST_OVERLAP], "the overlap", places[2])?;
     let mut axes = [None; 3];
     for (axis, row) in axes.iter_mut().enumerate() {
-        let count = whole(lowerer, counts[axis], [0, MOST_COPIES], "the number of copies", span)?;
+        let count = whole(lowerer, counts[axis], [0, MOST_COPIES], "the number of copies", places[1])?;
         let once = count == 1 || lowerer.graph.constant(period[axis]) == Some(0.0);
         if !once {
             *row = Some(Row { period: period[axis], count, symmetric: shape.is_symmetric(axis) });
@@ -199,6 +201,9 @@ fn surfaces() -> Vec<Builtin> {
             Type::Shape,
             "the surface as a wall of a thickness, half of it on each side; as exact as the shape",
             |lowerer, span, a| {
+                let place = lowerer.argument_span(1, span);
+                let message = "a thickness must be at least 0";
+                lowerer.refuse(&[a[1].scalar()], |x| x < 0.0, message, place)?;
                 let half = lowerer.graph.number(0.5);
                 let half = lowerer.graph.mul(a[1].scalar(), half);
                 Shape::value(Kind::Shell { child: a[0].shape(), half }, lowerer, span)
@@ -222,7 +227,7 @@ fn surfaces() -> Vec<Builtin> {
 fn direction(lowerer: &mut Lowerer<'_>, v: [ValueId; 3], what: &str, span: Span) -> Lowered<[ValueId; 3]> {
     let squared = lowerer.graph.dot(&v, &v);
     let message = format!("{what} must not be the zero vector");
-    lowerer.refuse(&[squared], |x| x <= 0.0, &message, span)?;
+    lowerer.refuse(&[squared], |x| x <= 0.0, &message, lowerer.argument_span(1, span))?;
     Ok(Value::Numbers(math::normalize(&mut lowerer.graph, &v)).vec3())
 }
 

@@ -129,34 +129,55 @@ impl Primitive {
         centred_box(lowerer, half, span)
     }
 
-    /// Refuses sizes that are known to make no solid.
+    /// Refuses sizes that are known to make no solid, at the argument of the call.
     pub(super) fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
-        let (sizes, what): (Vec<ValueId>, &str) = match self {
-            Self::Sphere { radius }
-            | Self::InfiniteCylinder { radius }
-            | Self::Capsule { radius, .. }
-            | Self::Octahedron { radius } => (vec![*radius], "a radius"),
-            Self::Box { half } => (half.to_vec(), "a half extent"),
-            Self::Cylinder { radius, half_height } | Self::Prism { radius, half_height, .. } => {
-                (vec![*radius, *half_height], "a radius or half height")
+        if let Self::Ellipsoid { radii } = self {
+            let place = lowerer.argument_span(0, span);
+            return lowerer.refuse(
+                radii,
+                |x| x <= 0.0,
+                "a radius of an ellipsoid must be more than 0",
+                place,
+            );
+        }
+        for (argument, sizes, what) in self.sizes() {
+            let place = lowerer.argument_span(argument, span);
+            lowerer.refuse(sizes, |x| x < 0.0, &format!("{what} must be at least 0"), place)?;
+        }
+        Ok(())
+    }
+
+    /// Sizes that are at least 0: which argument of the call they are, and what messages call them.
+    fn sizes(&self) -> Vec<(usize, &[ValueId], &'static str)> {
+        let one = std::slice::from_ref;
+        match self {
+            Self::Sphere { radius } | Self::InfiniteCylinder { radius } | Self::Octahedron { radius } => {
+                vec![(0, one(radius), "a radius")]
             }
-            Self::Torus { major, minor } => (vec![*major, *minor], "a radius"),
+            Self::Capsule { radius, .. } => vec![(2, one(radius), "a radius")],
+            Self::Box { half } => vec![(0, half, "a half extent")],
+            Self::Cylinder { radius, half_height } => {
+                vec![(0, one(radius), "a radius"), (1, one(half_height), "a half height")]
+            }
+            Self::Prism { radius, half_height, .. } => {
+                vec![(1, one(radius), "a radius"), (2, one(half_height), "a half height")]
+            }
+            Self::Torus { major, minor } => vec![(0, one(major), "a radius"), (1, one(minor), "a radius")],
             Self::Cone { radius, half_height, top } => {
-                (vec![*radius, *half_height, *top], "a radius or half height")
+                let ends = [radius, top].map(one);
+                vec![
+                    (0, ends[0], "a radius"),
+                    (1, one(half_height), "a half height"),
+                    (2, ends[1], "a radius"),
+                ]
             }
-            Self::Pyramid { half, half_height } => (vec![*half, *half_height], "a half extent"),
-            Self::Ellipsoid { radii } => {
-                return lowerer.refuse(
-                    radii,
-                    |x| x <= 0.0,
-                    "a radius of an ellipsoid must be more than 0",
-                    span,
-                );
+            Self::Pyramid { half, half_height } => {
+                vec![(0, one(half), "a half extent"), (1, one(half_height), "a half height")]
             }
-            Self::Disk { radius, rim } => (vec![*radius, *rim], "a radius or thickness"),
-            Self::Plane { .. } | Self::Mandelbulb(_) => return Ok(()),
-        };
-        lowerer.refuse(&sizes, |x| x < 0.0, &format!("{what} must be at least 0"), span)
+            // The thickness of a disk is twice its rim and is looked at before.
+            Self::Disk { radius, .. } => vec![(0, one(radius), "a radius")],
+            Self::Ellipsoid { .. } | Self::Plane { .. } | Self::Mandelbulb(_) => Vec::new(),
+        }
     }
 
     /// Whether the solid and its distance are their own mirror images in the plane across an axis.

@@ -208,6 +208,7 @@ impl Transform {
 
     /// Refuses numbers that are known to leave no solid.
     pub(super) fn check_sizes(&self, lowerer: &Lowerer<'_>, span: Span) -> Lowered<()> {
+        let span = lowerer.argument_span(1, span);
         match self {
             Self::Scale { factor } => {
                 lowerer.refuse(&[*factor], |x| x <= 0.0, "a scale must be more than 0", span)

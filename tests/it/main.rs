@@ -20,6 +20,7 @@ mod lights;
 mod mandelbulb;
 mod nearest;
 mod noises;
+mod operators;
 mod physics;
 mod primitives;
 mod properties;
@@ -50,6 +51,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(lights::trials());
     trials.extend(mandelbulb::trials());
     trials.extend(noises::trials());
+    trials.extend(operators::trials());
     trials.extend(physics::trials());
     trials.extend(primitives::trials());
     trials.extend(properties::trials());

@@ -77,6 +77,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         Trial::test("operators::stretch_of_a_twist_and_a_bend", stretch_by_formula),
         Trial::test("operators::blends_are_no_steeper_than_their_parts", blends_are_no_steeper),
         Trial::test("operators::blends_have_their_sign", blends_have_their_sign),
+        Trial::test("operators::copies_are_the_nearest", copies_are_the_nearest),
         Trial::test("operators::depth_is_that_of_the_nearest_wall", depth_is_right),
         Trial::test("operators::depth_is_never_more_than_there_is", depth_is_held),
     ]
@@ -186,9 +187,15 @@ fn places(count: usize) -> Vec<[f64; 3]> {
 /// difference the other way round; and away from the edge by the width they are equal.
 fn blends_have_their_sign() -> Result<(), Failed> {
     let [a, b, _] = parts();
-    for (how, width) in
-        [("smooth: 0", 0.0), ("smooth: 0.3", 0.3), ("chamfer: 0.2", 0.2), ("stairs: 0.3", 0.3)]
-    {
+    // How they blend, over which width, and what share of it the surface moves at most.
+    let blends = [
+        ("smooth: 0", 0.0, 0.5),
+        ("smooth: 0.3", 0.3, 0.25),
+        ("chamfer: 0.2", 0.2, 0.5),
+        ("stairs: 0.3", 0.3, 0.5),
+    ];
+    for (how, width, share) in blends {
+        let mut largest: f64 = 0.0;
         let solid = |text: &str| Solid::new(&of_parts(&format!("{text}(A, B, {how})")));
         let (union, common, rest) = (solid("union")?, solid("intersect")?, solid("subtract")?);
         for p in places(3000) {
@@ -199,9 +206,41 @@ fn blends_have_their_sign() -> Result<(), Failed> {
             for i in 0..3 {
                 let more = if i == 0 { sharp[0] - found[0] } else { found[i] - sharp[i] };
                 let right =
-                    if far[i] { more.abs() < 1e-9 } else { more >= -1e-9 && more <= 0.5 * width + 1e-9 };
+                    if far[i] { more.abs() < 1e-9 } else { more >= -1e-9 && more <= share * width + 1e-9 };
+                largest = largest.max(more);
                 ensure(right, || format!("{how} at {p:?}: {found:?} of {sharp:?}"))?;
             }
+        }
+        ensure(largest >= 0.95 * share * width, || format!("{how} moves by {largest} at most"))?;
+    }
+    Ok(())
+}
+
+/// Copies that keep to their cells are at the distance of the nearest of all, outside.
+fn copies_are_the_nearest() -> Result<(), Failed> {
+    let octahedron = octahedron(0.3);
+    let rows =
+        Solid::new("octahedron(0.3).translate((0.19, 0, -0.1)).repeat((1, 1.2, 0.8), count: (3, 2, 3))")?;
+    let around = Solid::new("octahedron(0.3).translate((0.9, 0, 0.1)).repeat_polar(5)")?;
+    for p in places(4000).into_iter().map(|p| p.map(|c| 2.0 * c)) {
+        let (mut in_rows, mut in_turns) = (f64::INFINITY, f64::INFINITY);
+        for i in 0..18 {
+            let cell = [i % 3, i / 3 % 2, i / 6].map(f64::from);
+            let centre = [cell[0] - 0.81, 1.2 * cell[1] - 0.6, 0.8 * cell[2] - 0.9];
+            in_rows = in_rows.min(octahedron(along(p, centre, -1.0)));
+        }
+        for i in 0..5 {
+            let (sine, cosine) = (std::f64::consts::TAU * f64::from(i) / 5.0).sin_cos();
+            let turned = [cosine * p[0] - sine * p[2], p[1], sine * p[0] + cosine * p[2]];
+            in_turns = in_turns.min(octahedron(along(turned, [0.9, 0.0, 0.1], -1.0)));
+        }
+        for (found, right) in [(rows.exact(p), in_rows), (around.exact(p), in_turns)] {
+            let held = if right > 0.0 {
+                (found - right).abs() < 1e-9
+            } else {
+                found >= right - 1e-9 && found <= 1e-9
+            };
+            ensure(held, || format!("at {p:?}: {found}, not {right}"))?;
         }
     }
     Ok(())

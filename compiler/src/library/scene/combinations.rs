@@ -19,7 +19,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "union",
             blended(vec![shapes()]),
             Type::Shape,
-            "all points of any shape; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
+            "all points of any shape; sharp as exact outside as the shapes, else a bound; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
                 let blend = blend(lowerer, a, 1, span)?;
                 Shape::value(Kind::Union { shapes: shape_list(&a[0]), blend }, lowerer, span)
@@ -29,7 +29,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "intersect",
             blended(vec![shapes()]),
             Type::Shape,
-            "the points common to all shapes; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
+            "the points common to all shapes; sharp as exact inside as the shapes, else a bound; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
                 let blend = blend(lowerer, a, 1, span)?;
                 Shape::value(Kind::Intersection { shapes: shape_list(&a[0]), blend }, lowerer, span)
@@ -39,7 +39,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "subtract",
             blended(pair),
             Type::Shape,
-            "the points of the first shape that are not in the second; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
+            "the points of the first shape that are not in the second; sharp as exact inside as the shapes, else a bound; smooth, chamfer or stairs is how far a round, flat or stepped blend reaches from the edge",
             |lowerer, span, a| {
                 let blend = blend(lowerer, a, 2, span)?;
                 Shape::value(

@@ -22,21 +22,21 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "sphere",
             vec![float("radius")],
             Type::Shape,
-            "ball at the origin; exact",
+            "ball at the origin; exact inside and outside",
             |lowerer, span, a| solid(lowerer, span, Primitive::Sphere { radius: a[0].scalar() }),
         ),
         call(
             "box",
             vec![vec3("half")],
             Type::Shape,
-            "box at the origin from its half extents; exact",
+            "box at the origin from its half extents; exact inside and outside",
             |lowerer, span, a| solid(lowerer, span, Primitive::Box { half: a[0].vec3() }),
         ),
         call(
             "cylinder",
             vec![float("radius"), float("half_height")],
             Type::Shape,
-            "capped cylinder around the y axis, from -half_height to half_height; exact",
+            "capped cylinder around the y axis, from -half_height to half_height; exact inside and outside",
             |lowerer, span, a| {
                 solid(
                     lowerer,
@@ -49,14 +49,14 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "infinite_cylinder",
             vec![float("radius")],
             Type::Shape,
-            "cylinder around the y axis; exact",
+            "cylinder around the y axis; exact inside and outside",
             |lowerer, span, a| solid(lowerer, span, Primitive::InfiniteCylinder { radius: a[0].scalar() }),
         ),
         call(
             "torus",
             vec![float("major"), float("minor")],
             Type::Shape,
-            "ring around the y axis: a circle of radius major, thickened by minor; exact",
+            "ring around the y axis: a circle of radius major, thickened by minor; exact inside and outside, inside a bound if minor is more than major",
             |lowerer, span, a| {
                 solid(lowerer, span, Primitive::Torus { major: a[0].scalar(), minor: a[1].scalar() })
             },
@@ -65,7 +65,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "capsule",
             vec![vec3("a"), vec3("b"), float("radius")],
             Type::Shape,
-            "all points within radius of the segment from a to b; exact",
+            "all points within radius of the segment from a to b; exact inside and outside",
             |lowerer, span, a| {
                 solid(
                     lowerer,
@@ -78,7 +78,7 @@ pub(super) fn builtins() -> Vec<Builtin> {
             "plane",
             vec![vec3("normal"), optional("offset", Type::Float, 0.0)],
             Type::Shape,
-            "half space below the plane normal . p = offset, the normal made unit length; exact",
+            "half space below the plane normal . p = offset, the normal made unit length; exact inside and outside",
             |lowerer, span, a| {
                 let normal = math::normalize(&mut lowerer.graph, a[0].numbers());
                 solid(
@@ -104,7 +104,7 @@ fn pointed() -> Vec<Builtin> {
             "cone",
             vec![float("radius"), float("half_height"), optional("top", Type::Float, 0.0)],
             Type::Shape,
-            "cone around the y axis, from radius at -half_height to radius top at half_height; exact",
+            "cone around the y axis, from radius at -half_height to radius top at half_height; exact inside and outside",
             |lowerer, span, a| {
                 let (radius, half_height, top) = (a[0].scalar(), a[1].scalar(), a[2].scalar());
                 solid(lowerer, span, Primitive::Cone { radius, half_height, top })
@@ -114,7 +114,7 @@ fn pointed() -> Vec<Builtin> {
             "prism",
             vec![required("sides", Type::Int), float("radius"), float("half_height")],
             Type::Shape,
-            "upright regular prism with 3 to 64 sides around the y axis, one corner above the x axis, radius to the corners; exact",
+            "upright regular prism with 3 to 64 sides around the y axis, one corner above the x axis, radius to the corners; exact inside and outside",
             |lowerer, span, a| {
                 let place = lowerer.argument_span(0, span);
                 let sides = whole(lowerer, a[0].scalar(), [3, 64], "the number of sides", place)?;
@@ -126,7 +126,7 @@ fn pointed() -> Vec<Builtin> {
             "pyramid",
             vec![float("half"), float("half_height")],
             Type::Shape,
-            "pyramid with a square of half side `half` at y = -half_height and the tip at half_height; exact",
+            "pyramid with a square of half side `half` at y = -half_height and the tip at half_height; exact inside and outside",
             |lowerer, span, a| {
                 let (half, half_height) = (a[0].scalar(), a[1].scalar());
                 solid(lowerer, span, Primitive::Pyramid { half, half_height })
@@ -136,21 +136,21 @@ fn pointed() -> Vec<Builtin> {
             "ellipsoid",
             vec![required("radii", Type::Vec3)],
             Type::Shape,
-            "ellipsoid at the origin from its radii along the axes; a lower bound, slow to march where flat",
+            "ellipsoid at the origin from its radii along the axes; a lower bound inside and outside, slow to march where flat",
             |lowerer, span, a| solid(lowerer, span, Primitive::Ellipsoid { radii: a[0].vec3() }),
         ),
         call(
             "octahedron",
             vec![float("radius")],
             Type::Shape,
-            "regular octahedron with its corners on the axes, radius away; exact",
+            "regular octahedron with its corners on the axes, radius away; exact inside and outside",
             |lowerer, span, a| solid(lowerer, span, Primitive::Octahedron { radius: a[0].scalar() }),
         ),
         call(
             "disk",
             vec![float("radius"), optional("thickness", Type::Float, 0.01)],
             Type::Shape,
-            "round plate across the y axis: all points within half the thickness of the flat disk; exact",
+            "round plate across the y axis: all points within half the thickness of the flat disk; exact inside and outside",
             |lowerer, span, a| {
                 let place = lowerer.argument_span(1, span);
                 let message = "a thickness must be at least 0";

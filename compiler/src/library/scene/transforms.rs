@@ -32,7 +32,7 @@ fn moves() -> Vec<Builtin> {
             "translate",
             vec![child(), required("offset", Type::Vec3)],
             Type::Shape,
-            "moved by offset",
+            "moved by offset; as exact as the shape",
             |lowerer, span, a| transformed(lowerer, span, a, Transform::Translate { offset: a[1].vec3() }),
         ),
         call(
@@ -53,14 +53,20 @@ fn turns() -> Vec<Builtin> {
         call(name, vec![child(), required("angle", Type::Angle)], Type::Shape, doc, function)
     };
     vec![
-        turn("rotate_x", "turned about the x axis, y towards z", |l, span, a| about(l, a, 0, span)),
-        turn("rotate_y", "turned about the y axis, z towards x", |l, span, a| about(l, a, 1, span)),
-        turn("rotate_z", "turned about the z axis, x towards y", |l, span, a| about(l, a, 2, span)),
+        turn("rotate_x", "turned about the x axis, y towards z; as exact as the shape", |l, span, a| {
+            about(l, a, 0, span)
+        }),
+        turn("rotate_y", "turned about the y axis, z towards x; as exact as the shape", |l, span, a| {
+            about(l, a, 1, span)
+        }),
+        turn("rotate_z", "turned about the z axis, x towards y; as exact as the shape", |l, span, a| {
+            about(l, a, 2, span)
+        }),
         call(
             "rotate",
             vec![child(), required("axis", Type::Vec3), required("angle", Type::Angle)],
             Type::Shape,
-            "turned about an axis through the origin, counterclockwise as seen with the axis towards the eye",
+            "turned about an axis through the origin, counterclockwise as seen with the axis towards the eye; as exact as the shape",
             |lowerer, span, a| {
                 let axis = direction(lowerer, a[1].vec3(), "an axis", span)?;
                 let columns = turn_about(&mut lowerer.graph, axis, a[2].scalar());
@@ -71,7 +77,7 @@ fn turns() -> Vec<Builtin> {
             "look_along",
             vec![child(), required("direction", Type::Vec3)],
             Type::Shape,
-            "turned by the shortest way so that what pointed along y points along direction",
+            "turned by the shortest way so that what pointed along y points along direction; as exact as the shape",
             |lowerer, span, a| {
                 let direction = direction(lowerer, a[1].vec3(), "a direction", span)?;
                 let columns = turn_to(&mut lowerer.graph, direction);
@@ -87,7 +93,7 @@ fn scales() -> Vec<Builtin> {
             "scale",
             vec![child(), required("factor", Type::Float)],
             Type::Shape,
-            "scaled about the origin",
+            "scaled about the origin; as exact as the shape",
             |lowerer, span, a| transformed(lowerer, span, a, Transform::Scale { factor: a[1].scalar() }),
         ),
         call(
@@ -104,14 +110,14 @@ fn scales() -> Vec<Builtin> {
             "elongate",
             vec![child(), required("by", Type::Vec3)],
             Type::Shape,
-            "cut across each axis at the origin and pulled apart to both sides by a length, the gap filled with the cut; as exact outside as the shape",
+            "cut across each axis at the origin and pulled apart to both sides by a length, the gap filled with the cut; as exact outside as the shape, a bound inside",
             |lowerer, span, a| transformed(lowerer, span, a, Transform::Elongate { by: a[1].vec3() }),
         ),
         call(
             "twist",
             vec![child(), required("rate", Type::Angle)],
             Type::Shape,
-            "turned about the y axis by an angle per unit of y; marched safely by the stretch at the shape's rim",
+            "turned about the y axis by an angle per unit of y; a lower bound, marched safely by the stretch at the shape's rim",
             |lowerer, span, a| {
                 let transform = transform::twist(lowerer, &a[0].shape(), a[1].scalar(), span)?;
                 transformed(lowerer, span, a, transform)
@@ -147,14 +153,14 @@ fn folds() -> Vec<Builtin> {
                 optional("overlap", Type::Int, 0.0),
             ],
             Type::Shape,
-            "count copies along each axis, centred at the origin, a period apart; count 0 is without end, period 0 no copies along that axis; overlap is into how many further cells the shape reaches",
+            "count copies along each axis, centred at the origin, a period apart; count 0 is without end, period 0 no copies along that axis; overlap is into how many further cells the shape reaches; as exact outside as the shape, a bound inside",
             repeat,
         ),
         call(
             "repeat_polar",
             vec![child(), required("count", Type::Int), optional("overlap", Type::Int, 0.0)],
             Type::Shape,
-            "count copies around the y axis, the first where the shape is, near the x axis; overlap is into how many further sectors the shape reaches",
+            "count copies around the y axis, the first where the shape is, near the x axis; overlap is into how many further sectors the shape reaches; as exact outside as the shape, a bound inside",
             |lowerer, span, a| {
                 let [first, second] = [1, 2].map(|i| lowerer.argument_span(i, span));
                 let count = whole(lowerer, a[1].scalar(), [1, MOST_COPIES], "the number of copies", first)?;
@@ -190,7 +196,7 @@ fn surfaces() -> Vec<Builtin> {
             "round",
             vec![child(), required("radius", Type::Float)],
             Type::Shape,
-            "grown by radius on all sides, which rounds the edges",
+            "grown by radius on all sides, which rounds the edges; as exact outside as the shape, a bound inside",
             |lowerer, span, a| {
                 Shape::value(Kind::Rounded { child: a[0].shape(), radius: a[1].scalar() }, lowerer, span)
             },
@@ -199,7 +205,7 @@ fn surfaces() -> Vec<Builtin> {
             "shell",
             vec![child(), required("thickness", Type::Float)],
             Type::Shape,
-            "the surface as a wall of a thickness, half of it on each side; as exact as the shape",
+            "the surface as a wall of a thickness, half of it on each side; as exact off the wall as the shape, a bound within it",
             |lowerer, span, a| {
                 let place = lowerer.argument_span(1, span);
                 let message = "a thickness must be at least 0";
@@ -213,7 +219,7 @@ fn surfaces() -> Vec<Builtin> {
             "displace",
             vec![child(), required("amount", of_position)],
             Type::Shape,
-            "the surface moved inwards by an amount that depends on the position; marched safely by the amount's own slope",
+            "the surface moved inwards by an amount that depends on the position; a bound, marched safely by the amount's own slope",
             |lowerer, span, a| {
                 let (child, amount) = (a[0].shape(), a[1].function());
                 let amount_span = lowerer.argument_span(1, span);

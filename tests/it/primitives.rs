@@ -128,7 +128,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         }));
     }
     trials.push(Trial::test("primitives::without_size", without_size));
-    trials.push(Trial::test("primitives::far_off", || elsewhere(&Place { offset: 1e4, size: 1.0 })));
+    trials.push(Trial::test("primitives::far_off", || {
+        elsewhere(&Place { offset: 1e4, size: 1.0 })?;
+        elsewhere(&Place { offset: 12_345.678, size: 1.0 })
+    }));
     trials.push(Trial::test("primitives::small", || elsewhere(&Place { offset: 0.0, size: 1e-4 })));
     trials.push(Trial::test("primitives::large", || elsewhere(&Place { offset: 0.0, size: 1e4 })));
     trials.push(Trial::test("primitives::gradients_point_away", gradients_point_away));
@@ -181,7 +184,7 @@ fn positions(place: &Place, count: usize) -> Vec<[f32; 3]> {
 }
 
 /// Compares the f64 and the f32 distance with the nearest point; in f32 to 1.5e-6 of the solid's size and
-/// of the distance from its centre.
+/// of the distance from its centre, and what rounding the offset moves it by.
 fn check(solid: &Solid, row: Row, place: &Place, count: usize) -> Result<(), Failed> {
     let (text, claim, nearest) = (row.0, row.1, row.2());
     let points = positions(place, count);
@@ -191,7 +194,8 @@ fn check(solid: &Solid, row: Row, place: &Place, count: usize) -> Result<(), Fai
         let right = place.size * nearest(local);
         let scale = place.size * (1.0 + length(local));
         let double = solid.exact(point.map(f64::from));
-        for (found, doubt) in [(double, 1e-9 * scale), (f64::from(single), 1.5e-6 * scale)] {
+        let moved = 1.1e-7 * place.offset;
+        for (found, doubt) in [(double, 1e-9 * scale), (f64::from(single), 1.5e-6 * scale + moved)] {
             let exact = claim == Exact || claim == ExactOutside && right >= 0.0;
             let same_side = found * right >= 0.0 || found.abs() <= doubt || right.abs() <= doubt;
             let held = same_side && found.abs() <= right.abs() + doubt;

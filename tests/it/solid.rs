@@ -27,6 +27,11 @@ impl Solid {
         Ok(Self { program, frame })
     }
 
+    /// The function of the distance as text.
+    pub(crate) fn text(&self) -> String {
+        format!("{:?}", self.program.module.function(self.program.objects[0].distance))
+    }
+
     /// Distance in f64.
     pub(crate) fn exact(&self, p: [f64; 3]) -> f64 {
         self.reference(self.program.objects[0].distance, p)[0]

@@ -108,7 +108,7 @@ impl Mandelbulb {
     pub(crate) fn new(lowerer: &mut Lowerer<'_>, args: [ValueId; 3], span: Span) -> Lowered<Self> {
         let [power, iterations, detail] = args;
         let places = [0, 1, 2].map(|i| lowerer.argument_span(i, span));
-        let outside = |x: f64| !(x >= POWERS[0] && x <= POWERS[1]);
+        let outside = |x: f64| !(POWERS[0]..=POWERS[1]).contains(&x);
         lowerer.refuse(&[power], outside, "the power of a Mandelbulb must be from 2 to 32", places[0])?;
         let coarse = |x: f64| x < LEAST_DETAIL;
         lowerer.refuse(&[detail], coarse, "the detail of a Mandelbulb must be at least 1e-6", places[2])?;

@@ -12,6 +12,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         Trial::test("mandelbulb::few_iterations_are_a_level", few_iterations_are_a_level),
         Trial::test("mandelbulb::power_is_that_of_the_angles", power_is_that_of_the_angles),
         Trial::test("mandelbulb::whole_powers_have_no_angles", whole_powers_have_no_angles),
+        Trial::test("mandelbulb::derivative_along_the_axis", derivative_along_the_axis),
         Trial::test("mandelbulb::slopes_are_those_of_the_distance", slopes_are_right),
         Trial::test("mandelbulb::surface_has_normals", surface_has_normals),
         Trial::test("mandelbulb::all_is_finite", all_is_finite),
@@ -164,6 +165,45 @@ fn power_is_that_of_the_angles() -> Result<(), Failed> {
             let right = (a - b).abs() < 1e-7 || (b.abs() < a.abs() && a * b >= 0.0);
             ensure(right, || format!("power {n} at {p:?}: {a} and {b}"))?;
         }
+    }
+    Ok(())
+}
+
+/// On the axis z, where the power is that of a number, the distance is half the potential over its
+/// derivative; `dr` is computed here as a number's. Nearer and nearer to the set more iterations are taken.
+fn derivative_along_the_axis() -> Result<(), Failed> {
+    for n in [2, 3, 8] {
+        let power = f64::from(n);
+        let escape = 2f64.powf(1.0 / (power - 1.0));
+        let solid = Solid::new(&format!("mandelbulb(power: {n}, iterations: 1000, detail: 1e-6)"))?;
+        // Where the parabola of fixed points ends.
+        let tip = (power - 1.0) * power.powf(-power / (power - 1.0));
+        let mut longest = 0;
+        for i in 1..60 {
+            let p = f64::from((tip * (1.0 + 0.8f64.powi(i) * (escape / tip - 1.0))) as f32);
+            let (mut z, mut slope, mut any, mut most, mut steps) = (p, 1.0f64, 1.0f64, 1.0f64, 0);
+            while z < 2f64.powf(8.0 / power) && slope < 64e6 && any < 4096e6 && steps < 1000 {
+                let factor = power * z.powi(n - 1);
+                slope = factor * slope + 1.0;
+                any = power * factor * any + 1.0;
+                most = most.max(any);
+                z = z.powi(n) + p;
+                steps += 1;
+            }
+            if z < 2f64.powf(8.0 / power) {
+                continue;
+            }
+            longest = longest.max(steps);
+            let level = power.powi(steps - 1000) * escape.ln();
+            let expected = (0.5 * z * (z.ln() - level) / slope - 1e-6) * slope / most;
+            let (double, single) = (solid.exact([0.0, 0.0, p]), solid.distances(&[[0.0, 0.0, p as f32]])?[0]);
+            ensure((double / expected - 1.0).abs() < 1e-9, || {
+                format!("power {n} at {p}: {double}, not {expected}")
+            })?;
+            let off = (f64::from(single) / expected - 1.0).abs();
+            ensure(off < 1e-3, || format!("power {n} at {p}: {single} in f32, not {expected}"))?;
+        }
+        ensure(longest >= 5, || format!("power {n}: at most {longest} iterations"))?;
     }
     Ok(())
 }

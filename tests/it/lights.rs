@@ -47,7 +47,8 @@ fn seen(draw: &Draw<'_>, text: &str) -> Result<Vec<Seen>, Failed> {
     const SIZE: [u32; 2] = [60, 40];
     let program = compile("test.vol", text)?;
     let frame = frame(&program, 0.0, SIZE)?;
-    let image = draw(&program, &frame, &Job { size: SIZE, step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE })?;
+    let image =
+        draw(&program, &frame, &Job { size: SIZE, step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE })?;
     let CameraFrame { origin, forward, right, up } = frame.camera;
     let [origin, forward, right, up] = [origin, forward, right, up].map(|v| v.map(f64::from));
     let pixels = image.pixels.iter().enumerate().filter(|(_, pixel)| pixel.depth.is_finite());

@@ -1,9 +1,9 @@
 //! Distances of shapes at points where they are known by hand, inside, outside and degenerate.
 
+use crate::solid::Solid;
 use crate::support::{compile, ensure, frame};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::SQRT_2;
-use vol_compiler::frame::Stride;
 
 /// Shape, point, signed distance.
 const CASES: &[(&str, [f64; 3], f64)] = &[
@@ -191,25 +191,12 @@ fn bounds_hold_the_inside() -> Result<(), Failed> {
 /// No two points have distances further apart than they are, after scaling by the steepness.
 fn safe_steps_do_not_overshoot() -> Result<(), Failed> {
     for shape in SOLIDS {
-        let program = compile("shape.vol", &format!("object o {{ shape: {shape} }}"))?;
-        let frame = frame(&program, 0.0, [8, 8])?;
-        let safe = |p: &[f64; 3], q: &[f64; 3]| match frame.objects[0].stride {
-            Stride::Scale(scale) => f64::from(scale),
-            Stride::Within(steepness) => {
-                let corners = [[0, 1, 2].map(|i| p[i].min(q[i])), [0, 1, 2].map(|i| p[i].max(q[i]))].concat();
-                let steepness = program.module.function(steepness);
-                1.0 / vol_compiler::reference::evaluate(steepness, &corners, &frame.uniforms, &frame.curves)
-                    [0]
-            }
-        };
-        let function = program.module.function(program.objects[0].distance);
-        let value =
-            |p: &[f64; 3]| vol_compiler::reference::evaluate(function, p, &frame.uniforms, &frame.curves)[0];
+        let solid = Solid::new(shape)?;
         for p in grid().step_by(7) {
             for direction in [[0.01, 0.0, 0.0], [0.0, -0.02, 0.01], [0.005, 0.005, -0.005]] {
                 let q = [0, 1, 2].map(|i| p[i] + direction[i]);
                 let apart = direction.iter().map(|c| c * c).sum::<f64>().sqrt();
-                let change = safe(&p, &q) * (value(&p) - value(&q)).abs();
+                let change = solid.safe_scale(p, q) * (solid.exact(p) - solid.exact(q)).abs();
                 ensure(change <= apart * (1.0 + 1e-9), || {
                     format!("{shape}: {change} over {apart} at {p:?}")
                 })?;

@@ -3,7 +3,7 @@
 use crate::support::{Random, compile, frame};
 use libtest_mimic::Failed;
 use vol::backend::Device;
-use vol_compiler::frame::Frame;
+use vol_compiler::frame::{Frame, Stride};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_compiler::reference;
@@ -34,18 +34,29 @@ impl Solid {
 
     /// Distance in f64.
     pub(crate) fn exact(&self, p: [f64; 3]) -> f64 {
-        self.reference(self.program.objects[0].distance, p)[0]
+        self.reference(self.program.objects[0].distance, &p)[0]
+    }
+
+    /// By what values are multiplied where a ray walks from one place to another.
+    pub(crate) fn safe_scale(&self, p: [f64; 3], q: [f64; 3]) -> f64 {
+        match self.frame.objects[0].stride {
+            Stride::Scale(scale) => f64::from(scale),
+            Stride::Within(steepness) => {
+                let corners = [[0, 1, 2].map(|i| p[i].min(q[i])), [0, 1, 2].map(|i| p[i].max(q[i]))].concat();
+                1.0 / self.reference(steepness, &corners)[0]
+            }
+        }
     }
 
     /// Gradient in f64.
     pub(crate) fn slope(&self, p: [f64; 3]) -> [f64; 3] {
-        let slope = self.reference(self.program.objects[0].gradient, p);
+        let slope = self.reference(self.program.objects[0].gradient, &p);
         [slope[0], slope[1], slope[2]]
     }
 
-    fn reference(&self, function: FunctionId, p: [f64; 3]) -> Vec<f64> {
+    fn reference(&self, function: FunctionId, inputs: &[f64]) -> Vec<f64> {
         let function = self.program.module.function(function);
-        reference::evaluate(function, &p, &self.frame.uniforms, &self.frame.curves)
+        reference::evaluate(function, inputs, &self.frame.uniforms, &self.frame.curves)
     }
 
     /// Distances in f32.

@@ -6,12 +6,13 @@ use vol_compiler::frame::{Image, Job, Sampling};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<libtest_mimic::Trial> {
-    let bodies: [(&str, Body); 5] = [
+    let bodies: [(&str, Body); 6] = [
         ("texture_is_noise_between_colors", texture_is_noise_between_colors),
         ("depth_is_a_medium", depth_is_a_medium),
         ("depth_of_a_slab", depth_of_a_slab),
         ("color_is_a_field", color_is_a_field),
         ("cutoffs_at_the_ends", cutoffs_at_the_ends),
+        ("leaves_with_its_object", leaves_with_its_object),
     ];
     bodies.into_iter().flat_map(|(name, body)| on_both(&format!("clouds::{name}"), body)).collect()
 }
@@ -157,4 +158,21 @@ fn cutoffs_at_the_ends(draw: &Draw<'_>) -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// A cloud that is switched off is not there, and one that is on weakens the sun behind it.
+fn leaves_with_its_object(draw: &Draw<'_>) -> Result<(), Failed> {
+    let floor = |when: &str| -> Result<f32, Failed> {
+        let text = format!(
+            "camera {{ from: (0, 1, 6), at: (0, 0, 0), fov: 2deg }}\nlight sun {{ from: (0, 1, 0), color: 1 }}\n\
+             object floor {{ shape: plane((0, 1, 0)), material: phong(0, 1, 0, 1) }}\n\
+             object cloud {{ shape: sphere(1).translate((0, 4, 0)), when: {when}, \
+             material: cloud_3d(1, cutoff: -1e7, depth: 1e7, density: 0.5) }}"
+        );
+        Ok(picture(draw, &text, [3, 3], 0.01)?.pixels[4].color[0])
+    };
+    let (off, on) = (floor("false")?, floor("true")?);
+    // Two units of density 1/2.
+    let expected = (-1f32).exp();
+    ensure((off - 1.0).abs() < 1e-5 && (on - expected).abs() < 1e-3, || format!("{off} and {on}"))
 }

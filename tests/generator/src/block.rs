@@ -79,9 +79,21 @@ impl Generator<'_> {
     fn light(&mut self, index: usize) {
         let place = if self.source.once_in(2) { "from" } else { "at" };
         let mut entries = vec![format!("{place}: {}", self.direction())];
+        let size = if place == "from" { "spread" } else { "radius" };
         for key in BlockKind::Light.keys() {
-            if !matches!(key.name, "from" | "at") && self.source.once_in(2) {
-                entries.push(self.free_entry(&key));
+            if !self.source.once_in(2) {
+                continue;
+            }
+            match key.name {
+                "from" | "at" => {}
+                // A light has the size of its kind, and none is negative.
+                "spread" | "radius" if key.name != size => {}
+                "spread" => entries.push(format!("spread: {}deg", self.source.below(120))),
+                "radius" | "occlusion" => {
+                    let amount = self.source.pick(&["0", "0.3", "0.2 * time", "sin(time)", "40"]);
+                    entries.push(format!("{}: {amount}", key.name));
+                }
+                _ => entries.push(self.free_entry(&key)),
             }
         }
         self.write_block(BlockKind::Light, &format!("lamp{index}"), entries);

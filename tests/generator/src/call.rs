@@ -149,6 +149,8 @@ impl Generator<'_> {
     /// An argument for which the language has a rule that its type does not tell.
     fn ruled(&mut self, signature: &Signature, param: &Parameter) -> Option<Piece> {
         let texts: &[&str] = match (signature.name, param.name) {
+            ("cloud_2d" | "cloud_3d", "octaves") => &["4", "1", "7"],
+            ("cloud_3d", "depth") => &["0.5", "2", "time", "1e9"],
             (_, "octaves") => &["4", "1", "0", "7", "frame % 5"],
             ("gardner", "terms") => &["5", "1", "7"],
             ("prism", "sides") => &["5", "3", "12"],

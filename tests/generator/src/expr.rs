@@ -124,7 +124,10 @@ impl Generator<'_> {
             }
             Type::Shape => self.plain_shape(),
             Type::Curve => Piece::atom("line((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))"),
-            Type::Material => Piece::atom(self.source.pick(&["diffuse(0.8)", "normals()"])),
+            Type::Material => {
+                let clouds = ["cloud_2d(0.9, noise: gardner, cutoff: time)", "cloud_3d((0.9, 0.8, 1))"];
+                Piece::atom(self.source.pick(&["diffuse(0.8)", "normals()", clouds[0], clouds[1]]))
+            }
             Type::Phase => Piece::atom(self.source.pick(&["isotropic()", "rayleigh()"])),
             Type::Local | Type::Record(_) | Type::Block(_) | Type::Settings(_) | Type::Error => {
                 unreachable!("no expression of these is asked for")

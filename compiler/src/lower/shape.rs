@@ -10,12 +10,14 @@
 //! | `transform` | maps of space |
 //! | `copies` | repetition |
 //! | `steepness` | how fast the distance changes over a piece of a ray |
+//! | `steady` | what may be grown and blended |
 
 pub(crate) mod blend;
 pub(crate) mod copies;
 pub(crate) mod mandelbulb;
 pub(crate) mod primitives;
 mod steepness;
+mod steady;
 pub(crate) mod transform;
 
 use super::tube::Tube;
@@ -48,6 +50,8 @@ pub(crate) struct Shape {
     parts: u32,
     /// Nesting.
     levels: u32,
+    /// Whether the distance changes no faster than the extent says.
+    steady: bool,
 }
 
 /// The kinds of solids. Lengths are in scene units, negative distance is inside.
@@ -100,6 +104,7 @@ impl Shape {
     /// A value of a kind, within the limits; sizes known to make no solid are refused.
     pub(crate) fn value(kind: Kind, lowerer: &Lowerer<'_>, span: Span) -> Lowered<Value> {
         kind.check_sizes(lowerer, span)?;
+        kind.check_steady(span)?;
         let children = kind.children();
         let parts = children.iter().fold(1u32, |sum, child| sum.saturating_add(child.parts));
         let parts = parts.saturating_mul(kind.copies());
@@ -107,7 +112,8 @@ impl Shape {
         if parts > MAX_PARTS || levels > MAX_LEVELS {
             return Err(too_large(parts, span));
         }
-        Ok(Value::Shape(Rc::new(Self { kind, parts, levels })))
+        let steady = kind.is_steady();
+        Ok(Value::Shape(Rc::new(Self { kind, parts, levels, steady })))
     }
 
     /// Signed distance (or the bound that the variant states) at a point.

@@ -171,7 +171,7 @@ fn mandelbulb() -> Builtin {
     ];
     let doc = "the points that z^power + p keeps near, its axis z, radius about 1.2: the surface is detail in front of the set, \
                power 2 to 32, without trigonometry if it is a constant whole number; a lower bound inside and outside, \
-               but not so steady that round, shell, displace or smooth could rely on it";
+               but too unsteady to be rounded, displaced, blended or made a shell";
     call("mandelbulb", params, Type::Shape, doc, |lowerer, span, a| {
         let bulb = Mandelbulb::new(lowerer, [a[0].scalar(), a[1].scalar(), a[2].scalar()], span)?;
         solid(lowerer, span, Primitive::Mandelbulb(bulb))

@@ -97,7 +97,8 @@ impl Primitive {
         }
     }
 
-    /// Where it is.
+    /// Where it is. The distance of a Mandelbulb counts as proper: it is safe to march, and what asks for more
+    /// is refused (`steady`).
     pub(super) fn extent(&self, lowerer: &mut Lowerer<'_>, span: Span) -> Lowered<Extent> {
         let graph = &mut lowerer.graph;
         let half = match self {

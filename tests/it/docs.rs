@@ -136,7 +136,7 @@ fn table(name: &str) -> Option<String> {
 }
 
 /// The table that a function stands in.
-fn group(signature: &Signature, is_standard: bool) -> &'static str {
+pub(crate) fn group(signature: &Signature, is_standard: bool) -> &'static str {
     let params = &signature.params;
     let is_shape = |index: usize| params.get(index).is_some_and(|param| param.ty == Type::Shape);
     let is_place = params.first().is_some_and(|param| param.name == "p");

@@ -6,6 +6,7 @@ use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::compare;
 use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::program::Program;
 
 /// A small picture.
 const SIZE: [u32; 2] = [48, 27];
@@ -25,13 +26,14 @@ pub(crate) fn trials() -> Vec<Trial> {
             Trial::test(format!("examples::{name}_is_the_same_on_any_threads"), move || threads(&scene));
         trials.push(trial);
         let scene = path.clone();
-        let trial =
-            Trial::test(format!("examples::{name}_agrees_with_the_reference"), move || reference(&scene));
+        let trial = Trial::test(format!("examples::{name}_agrees_with_the_reference"), move || {
+            reference(&compile_file(&scene)?)
+        });
         trials.push(trial);
         #[cfg(feature = "gpu")]
         trials.push(crate::gpu_device::gpu_trial(
             &format!("examples::{name}_agrees_with_the_cpu"),
-            move |gpu| agrees(gpu, &path),
+            move |gpu| agrees(gpu, &compile_file(&path)?),
         ));
     }
     trials
@@ -58,24 +60,24 @@ pub(crate) fn has_content(image: &Image) -> bool {
     finite && image.pixels.iter().any(|pixel| compare::difference(pixel, &background) > 0.05)
 }
 
-fn reference(path: &Path) -> Result<(), Failed> {
-    let program = compile_file(path)?;
-    let frame = frame(&program, 0.4, REFERENCE_SIZE)?;
+/// A small picture against that of the f64 reference.
+pub(crate) fn reference(program: &Program) -> Result<(), Failed> {
+    let frame = frame(program, 0.4, REFERENCE_SIZE)?;
     let job = Job { size: REFERENCE_SIZE, ..JOB };
-    let actual = render(&program, &frame, &job, 2)?;
-    let expected = compare::reference_picture(&program, &frame, &job);
+    let actual = render(program, &frame, &job, 2)?;
+    let expected = compare::reference_picture(program, &frame, &job);
     let report = compare::images(&actual, &expected, compare::PRECISION);
     ensure(report.passes(), || format!("{report:?}"))
 }
 
+/// The picture of the GPU against that of the CPU.
 #[cfg(feature = "gpu")]
-fn agrees(gpu: &vol_runtime_gpu::Gpu, path: &Path) -> Result<(), Failed> {
-    let program = compile_file(path)?;
-    let frame = frame(&program, 0.4, SIZE)?;
-    let cpu = render(&program, &frame, &JOB, 2)?;
-    let renderer = vol_runtime_gpu::Renderer::new(gpu, &program)?;
+pub(crate) fn agrees(gpu: &vol_runtime_gpu::Gpu, program: &Program) -> Result<(), Failed> {
+    let frame = frame(program, 0.4, SIZE)?;
+    let cpu = render(program, &frame, &JOB, 2)?;
+    let renderer = vol_runtime_gpu::Renderer::new(gpu, program)?;
     let cancelled = std::sync::atomic::AtomicBool::new(false);
-    let rendered = renderer.render(gpu, &program, &frame, &JOB, &|_| {}, &cancelled)?;
+    let rendered = renderer.render(gpu, program, &frame, &JOB, &|_| {}, &cancelled)?;
     let (gpu, counts) = rendered.ok_or("cancelled by nobody")?;
     ensure(counts.rays >= u64::from(SIZE[0] * SIZE[1]), || format!("{counts:?}"))?;
     let report = compare::images(&cpu, &gpu, compare::GPU_IMAGE);

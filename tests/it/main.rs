@@ -21,6 +21,7 @@ mod mandelbulb;
 mod nearest;
 mod noises;
 mod operators;
+mod pages;
 mod physics;
 mod primitives;
 mod properties;
@@ -52,6 +53,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(mandelbulb::trials());
     trials.extend(noises::trials());
     trials.extend(operators::trials());
+    trials.extend(pages::trials());
     trials.extend(physics::trials());
     trials.extend(primitives::trials());
     trials.extend(properties::trials());

@@ -16,8 +16,8 @@ pub(crate) mod blend;
 pub(crate) mod copies;
 pub(crate) mod mandelbulb;
 pub(crate) mod primitives;
-mod steepness;
 mod steady;
+mod steepness;
 pub(crate) mod transform;
 
 use super::tube::Tube;

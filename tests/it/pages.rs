@@ -1,0 +1,97 @@
+//! `docs/shapes.md` and `docs/figures.md`: every scene on them is right on both backends, and none is missing.
+
+use crate::support::{compile, ensure};
+use crate::{docs, examples};
+use libtest_mimic::{Failed, Trial};
+use std::path::Path;
+use vol_compiler::library::library;
+use vol_compiler::program::Program;
+
+/// The pages, each with a folder of pictures.
+const PAGES: [&str; 2] = ["shapes", "figures"];
+
+/// The trials of this file.
+pub(crate) fn trials() -> Vec<Trial> {
+    let mut trials = vec![
+        Trial::test("pages::every_scene_has_a_picture", every_scene_has_a_picture),
+        Trial::test("pages::no_shape_is_missing", no_shape_is_missing),
+    ];
+    for (name, text) in PAGES.into_iter().flat_map(scenes) {
+        let scene = text.clone();
+        let reference = move || examples::reference(&program(&scene)?);
+        trials.push(Trial::test(format!("pages::{name}_agrees_with_the_reference"), reference));
+        #[cfg(feature = "gpu")]
+        trials
+            .push(crate::gpu_device::gpu_trial(&format!("pages::{name}_agrees_with_the_cpu"), move |gpu| {
+                examples::agrees(gpu, &program(&text)?)
+            }));
+    }
+    trials
+}
+
+fn text_of(page: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/{page}.md"));
+    std::fs::read_to_string(path).unwrap_or_default()
+}
+
+fn program(text: &str) -> Result<Program, Failed> {
+    compile("page.vol", text)
+}
+
+/// Each block under a name, behind the last one that stands under none.
+fn scenes(page: &str) -> Vec<(String, String)> {
+    let (mut scenes, mut name, mut shared) = (Vec::new(), String::new(), String::new());
+    let mut block: Option<String> = None;
+    for line in text_of(page).lines() {
+        match (line, &mut block) {
+            ("```", Some(text)) if name.is_empty() => {
+                shared = std::mem::take(text);
+                block = None;
+            }
+            ("```", Some(text)) => {
+                scenes.push((name.clone(), format!("{shared}{text}")));
+                block = None;
+            }
+            (line, Some(text)) => *text += &format!("{line}\n"),
+            ("```vol", None) => block = Some(String::new()),
+            (line, None) if line.starts_with("### ") => name = line[4..].trim_matches('`').to_owned(),
+            (line, None) if line.starts_with("## ") => name.clear(),
+            (_, None) => {}
+        }
+    }
+    scenes
+}
+
+fn every_scene_has_a_picture() -> Result<(), Failed> {
+    for page in PAGES {
+        let (text, scenes) = (text_of(page), scenes(page));
+        ensure(!scenes.is_empty(), || format!("docs/{page}.md has no scenes"))?;
+        for (name, _) in scenes {
+            let picture = format!("![{name}]({page}/{name}.png)");
+            ensure(text.contains(&picture), || format!("`{name}` shows no picture"))?;
+            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/{page}/{name}.png"));
+            ensure(file.exists(), || format!("{} is missing: run `scripts/gallery`", file.display()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Every function that gives a solid or a material, and every blend in every operator.
+fn no_shape_is_missing() -> Result<(), Failed> {
+    let scenes = scenes("shapes");
+    let shown = |call: &str| scenes.iter().any(|(_, text)| text.contains(call));
+    for signature in library().signatures {
+        let asked = ["primitives", "operators", "transforms", "materials"];
+        let is_asked = asked.contains(&docs::group(&signature, false));
+        let call = format!("{}(", signature.name);
+        let by_operator = ["union", "intersect", "subtract"].contains(&signature.name);
+        ensure(!is_asked || by_operator || shown(&call), || format!("`{call}…)` is not on the page"))?;
+    }
+    for operator in ["union", "intersection", "difference"] {
+        for blend in ["", "smooth_", "chamfer_", "stairs_"] {
+            let name = format!("{blend}{operator}");
+            ensure(scenes.iter().any(|(found, _)| *found == name), || format!("there is no `{name}`"))?;
+        }
+    }
+    Ok(())
+}

@@ -135,15 +135,16 @@ impl<F: Fields> Integrator<'_, F> {
             let around = self.around(cones, &spans, &feelers);
             let mut left = Vec::with_capacity(feelers.len());
             for (feeler, around) in feelers.into_iter().zip(around) {
+                let cone = &cones[feeler.cone];
                 // A ray that enters a solid is not clear at all.
-                if around.distance < zero {
+                if cone.shadow.enters(around.distance, feeler.t) {
                     lowest[feeler.cone] = zero;
                     continue;
                 }
-                let cone = &cones[feeler.cone];
                 let end = cone.shadow.length.min(F::Real::from_f32(FAR));
                 // Count what is surely not behind the light.
-                let counts = (feeler.t > zero) & (around.distance < end - feeler.t);
+                let counts =
+                    (feeler.t > zero) & (around.distance >= zero) & (around.distance < end - feeler.t);
                 let divisor = if counts { feeler.t } else { F::Real::ONE };
                 let sine = (around.distance / divisor).min(F::Real::ONE);
                 let sample = [F::Real::ONE / divisor, sine * sine];

@@ -31,6 +31,13 @@ impl<R: Real> ShadowRay<R> {
     pub(crate) fn new(ray: Ray<R>, length: R, bias: R) -> Self {
         Self { ray, length, stride: R::from_f32(0.25) * bias }
     }
+
+    /// Whether a place on the ray is inside a solid, by the distance there. Where two surfaces meet in a
+    /// corner the ray may start a little inside the other one: twice the bias does not count at first.
+    pub(super) fn enters(&self, distance: R, t: R) -> bool {
+        let start = R::from_f32(8.0) * self.stride - t;
+        distance < -start.max(R::ZERO)
+    }
 }
 
 impl<F: Fields> Integrator<'_, F> {
@@ -88,11 +95,11 @@ impl<F: Fields> Integrator<'_, F> {
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
-                if near.distance < F::Real::ZERO {
+                let ray = &rays[walker.ray];
+                if ray.enters(near.distance, walker.t) {
                     blocked[walker.ray] = true;
                     continue;
                 }
-                let ray = &rays[walker.ray];
                 let t = walker.t + near.advance(step, ray.stride);
                 if t < ray.length.min(F::Real::from_f32(FAR)) {
                     left.push(Walker { ray: walker.ray, t, from: walker.t });

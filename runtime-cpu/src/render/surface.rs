@@ -14,7 +14,7 @@ use super::camera::{FAR, Ray, Span, contains, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Batches, Integrator, Scene};
 use super::stride::Ahead;
-use crate::real::{Real, Vec3, length, scale};
+use crate::real::{Real, Vec3, dot, length, scale};
 
 /// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
 pub(crate) const MAX_STEPS: u32 = 2000;
@@ -258,18 +258,38 @@ impl<'a, F: Fields> Integrator<'a, F> {
             let probes = between.iter().zip(values).zip(&mut brackets);
             probes.for_each(|((walker, value), bracket)| bracket.narrow(walker.t, value));
         }
-        // Take the normals a little inside: on the surface itself a distance may have no gradient.
         let ends = walkers.iter().zip(&brackets).map(|(walker, bracket)| (walker.ray, bracket.best()));
         let ends: Vec<_> = ends.collect();
-        let inside = |&(ray, [t, _]): &(usize, [F::Real; 2])| {
-            let t = t + rounding(self.scene, t);
-            Walker { ray, t, from: t }
-        };
-        let inside: Vec<_> = ends.iter().map(inside).collect();
-        let gradients = self.gradients(rays, solid, &inside);
+        let gradients = self.facing_gradients(rays, solid, &ends);
         let ends = ends.into_iter().zip(gradients);
         ends.map(|((ray, best), gradient)| contact(self.scene, &rays[ray], (ray, solid), best, gradient))
             .collect()
+    }
+
+    /// Gradients of one solid's distance where rays enter it, at `[t, value]`: taken a little inside, since
+    /// on the surface itself a distance may have none. One that points along its ray is that of another
+    /// wall, where solids touch: then it is taken a little outside.
+    fn facing_gradients(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        solid: usize,
+        ends: &[(usize, [F::Real; 2])],
+    ) -> Vec<Vec3<F::Real>> {
+        let scene = self.scene;
+        let beside = |ray: usize, t: F::Real, side: F::Real| {
+            let t = t + side * rounding(scene, t);
+            Walker { ray, t, from: t }
+        };
+        let inside: Vec<_> = ends.iter().map(|&(ray, [t, _])| beside(ray, t, F::Real::ONE)).collect();
+        let mut gradients = self.gradients(rays, solid, &inside);
+        let away = |i: &usize| dot(gradients[*i], rays[ends[*i].0].direction) > F::Real::ZERO;
+        let away: Vec<usize> = (0..ends.len()).filter(away).collect();
+        let outside =
+            away.iter().map(|&i| beside(ends[i].0, ends[i].1[0], -F::Real::ONE)).collect::<Vec<_>>();
+        for (i, gradient) in away.into_iter().zip(self.gradients(rays, solid, &outside)) {
+            gradients[i] = gradient;
+        }
+        gradients
     }
 
     /// Distances of one solid as the camera sees them.

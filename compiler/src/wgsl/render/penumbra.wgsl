@@ -41,12 +41,12 @@ fn walk(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
     for (var count = 0u; count < MAX_STEPS; count++) {
         let near = around(ray, &spans, t);
         // A ray that enters a solid is not clear at all.
-        if (near.distance < 0.0) {
+        if (enters(near.distance, t, least_step)) {
             lowest = 0.0;
             break;
         }
         // Count what is surely not behind the light.
-        let counts = (t > 0.0) & (near.distance < (end - t));
+        let counts = (t > 0.0) & (near.distance >= 0.0) & (near.distance < (end - t));
         let divisor = select(1.0, t, counts);
         let sine = min(near.distance / divisor, 1.0);
         let sample = vec2f(1.0 / divisor, sine * sine);

@@ -24,6 +24,12 @@ fn through_media(ray: Ray, distance: f32, part: f32) -> vec3f {
     return select(decay3(depth) * part, vec3f(0.0), smallest(depth) > OPAQUE);
 }
 
+// Whether a place on a ray with a shortest step is inside a solid: at first twice the bias does not count.
+fn enters(distance: f32, t: f32, least: f32) -> bool {
+    let start = (8.0 * least) - t;
+    return distance < -max(start, 0.0);
+}
+
 // Whether the ray enters a solid before it reaches the light.
 fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     var sides = no_sides();
@@ -35,7 +41,7 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     for (var count = 1u; count <= MAX_STEPS; count++) {
         // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
         let near = nearest(ray, &spans, &sides, t, before);
-        inside = near.distance < 0.0;
+        inside = enters(near.distance, t, least);
         before = t;
         t += advance(near, count, least);
         if (inside | (t >= end)) {

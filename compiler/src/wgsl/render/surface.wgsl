@@ -171,10 +171,17 @@ fn refine(ray: Ray, solid: u32, before: f32, t: f32, side: f32) -> Contact {
     }
     let nearer = abs(bracket.outside.y) < abs(bracket.inside.y);
     let best = select(bracket.inside, bracket.outside, nearer);
-    // Take the normal a little inside: on the surface itself a distance may have no gradient.
-    let inside = best.x + rounding(best.x);
-    let gradient = object_gradient(solid, ray_at(ray, inside)) * side;
+    let gradient = facing_gradient(ray, solid, best.x, side);
     return contact(ray, solid, best.x, abs(best.y), gradient);
+}
+
+// Gradient where a ray enters a solid: taken a little inside, or outside if it points along the ray.
+fn facing_gradient(ray: Ray, solid: u32, t: f32, side: f32) -> vec3f {
+    let gradient = object_gradient(solid, ray_at(ray, t + rounding(t))) * side;
+    if (dot3(gradient, ray.direction) > 0.0) {
+        return object_gradient(solid, ray_at(ray, t - rounding(t))) * side;
+    }
+    return gradient;
 }
 
 // Where the field would be 0 if it were linear between the two; the inner place where it does not

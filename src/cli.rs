@@ -166,8 +166,8 @@ pub(crate) struct Query {
     /// Scene, params and moment.
     #[command(flatten)]
     pub(crate) scene: Scene,
-    /// `distance:NAME`, `density:NAME`, `colour:NAME`, `local:NAME`, or a top-level function of a
-    /// position
+    /// `distance:NAME`, `gradient:NAME`, `density:NAME`, `colour:NAME`, `local:NAME`, or a top-level
+    /// function of a position
     pub(crate) field: String,
     /// File with one point per line, `x,y,z`; blank lines and `#` comments are skipped; `-` is
     /// standard input

@@ -252,7 +252,7 @@ pub struct Render {
 /// A function of a position with a name.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// `distance:ball`, `density:cloud`, or the name of a top-level function.
+    /// `distance:ball`, `gradient:ball`, `density:cloud`, or the name of a top-level function.
     pub name: String,
     /// 3 inputs; as many outputs as the value has components.
     pub function: FunctionId,

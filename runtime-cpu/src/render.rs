@@ -4,7 +4,7 @@
 //! evaluator to check them. The WGSL twin is `compiler/src/wgsl/render.wgsl` with its folder.
 //!
 //! 1. `sampling`: places in each pixel; `camera`: a ray through each of them.
-//! 2. `surface`: sphere tracing to the first surface, false position onto it, its normal.
+//! 2. `surface`: steps to the first surface as long as `stride` allows, false position onto it, its normal.
 //! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`, those with a
 //!    size through `penumbra`; `occlusion` by surfaces around.
 //! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray.

@@ -1,9 +1,11 @@
 //! `docs/shapes.md` and `docs/figures.md`: every scene on them is right on both backends, and none is missing.
 
-use crate::support::{compile, ensure};
-use crate::{docs, examples};
+use crate::support::{compile, ensure, frame};
+use crate::{differential, docs, examples};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
+use vol::backend::Device;
+use vol_compiler::frame::Frame;
 use vol_compiler::library::library;
 use vol_compiler::program::Program;
 
@@ -18,7 +20,11 @@ pub(crate) fn trials() -> Vec<Trial> {
     ];
     for (name, text) in PAGES.into_iter().flat_map(scenes) {
         let scene = text.clone();
-        let reference = move || examples::reference(&program(&scene)?);
+        let reference = move || {
+            let program = program(&scene)?;
+            fields(&program)?;
+            examples::reference(&program)
+        };
         trials.push(Trial::test(format!("pages::{name}_agrees_with_the_reference"), reference));
         #[cfg(feature = "gpu")]
         trials
@@ -36,6 +42,18 @@ fn text_of(page: &str) -> String {
 
 fn program(text: &str) -> Result<Program, Failed> {
     compile("page.vol", text)
+}
+
+/// Distances, gradients and colours in f32 against f64.
+fn fields(program: &Program) -> Result<(), Failed> {
+    let frame = frame(program, 0.0, [8, 8])?;
+    let evaluate = |program: &Program, frame: &Frame, id, points: &[[f32; 3]]| {
+        Device::Cpu.evaluate(program, frame, id, points).map_err(|failure| format!("{failure:?}").into())
+    };
+    for (name, report) in differential::compare_fields(program, &frame, 300, &evaluate)? {
+        ensure(report.passes(), || format!("{name}: {report:?}"))?;
+    }
+    Ok(())
 }
 
 /// Each block under a name, behind the last one that stands under none.

@@ -253,6 +253,7 @@ fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan:
     };
     let fields = &mut plan.fields;
     fields.push(Field { name: format!("distance:{name}"), function: object.distance });
+    fields.push(Field { name: format!("gradient:{name}"), function: object.gradient });
     add_field(lowerer, fields, format!("colour:{name}"), &base);
     let local = shape.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
     add_field(lowerer, fields, format!("local:{name}"), &local);

@@ -27,6 +27,7 @@ pub(crate) mod value;
 use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
+use std::collections::HashSet;
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
 use vol_language::hir;
@@ -90,6 +91,8 @@ pub(crate) struct Lowerer<'a> {
     /// Values of the bindings in scope.
     environment: Environment,
     lets: Vec<Option<Lowered<Value>>>,
+    /// Numbers that an author's `if` chooses by the position: they may jump.
+    pub(crate) choices: HashSet<ValueId>,
     /// Arguments of the built-in function that is being called, for messages about one of them.
     arguments: &'a [hir::ExprId],
     /// First frame input of each param.
@@ -121,6 +124,7 @@ impl<'a> Lowerer<'a> {
             tubes: Vec::new(),
             environment: Environment::new(hir.local_count),
             lets: vec![None; hir.lets.len()],
+            choices: HashSet::new(),
             arguments: &[],
             param_inputs,
             frame_inputs,

@@ -134,7 +134,7 @@ pub struct Object {
     /// Position to gradient of the distance: 3 inputs, 3 outputs, not normalised.
     pub gradient: FunctionId,
     /// Box of positions (smallest corner, largest corner) to a bound, at least 1, on the length of the
-    /// gradient in it: 6 inputs, 1 output; without, that is 1 everywhere.
+    /// gradient in it, or to [`NO_BOUND`]: 6 inputs, 1 output; without, that is 1 everywhere.
     pub steepness: Option<FunctionId>,
     /// Position to surface response: 3 inputs, [`SURFACE_OUTPUTS`] outputs.
     pub surface: FunctionId,
@@ -147,6 +147,9 @@ pub struct Object {
     /// Its block.
     pub span: Span,
 }
+
+/// Stands for a slope of which nothing is known: a jump is possible.
+pub const NO_BOUND: f32 = 1e30;
 
 /// Outputs of [`Object::surface`]: emitted rgb (ambient light times ka in it), diffuse rgb (multiplies irradiance times
 /// max(0, N.L)), specular rgb (multiplies irradiance times max(0, R.E)^shininess), shininess.

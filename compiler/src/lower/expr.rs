@@ -2,7 +2,8 @@
 
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer, MAX_DEPTH, MAX_UNROLLED};
-use crate::ir::ValueId;
+use crate::ir::graph::Rate;
+use crate::ir::{Inst, ValueId};
 use crate::ops::Op;
 use std::rc::Rc;
 use vol_language::ast::{BinaryOp, UnaryOp};
@@ -225,7 +226,15 @@ impl Lowerer<'_> {
 
     fn pick(&mut self, condition: ValueId, a: ValueId, b: ValueId) -> ValueId {
         match self.graph.ty(a) {
-            crate::ops::Ty::Number => self.graph.select(condition, a, b),
+            crate::ops::Ty::Number => {
+                let picked = self.graph.select(condition, a, b);
+                // Two equal numbers leave nothing to choose.
+                let chooses = matches!(self.graph.inst(picked), Inst::Apply { op: Op::Select, .. });
+                if chooses && self.graph.rate(condition) == Rate::Point {
+                    self.choices.insert(picked);
+                }
+                picked
+            }
             crate::ops::Ty::Bool => {
                 let yes = self.graph.apply(Op::And, &[condition, a]);
                 let not = self.graph.apply(Op::Not, &[condition]);

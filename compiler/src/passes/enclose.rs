@@ -74,31 +74,53 @@ fn apply(graph: &mut Graph, op: Op, data: u32, args: &[Range]) -> Option<Vec<Ran
     Some(results.into_iter().map(Range::point).collect())
 }
 
-/// The numbers on which `value` depends and that jump: where one of them may take two values, slopes
-/// bound nothing. What only decides between two numbers, or when a loop ends, does not count: they are
-/// taken to meet.
+/// What makes `value` jump: numbers that do, and the conditions of choices that an author wrote. Where
+/// one of them may take two values ([`varies`]), slopes bound nothing. Other selections, and the ends
+/// of loops, are taken to be steady.
 ///
 /// * returns: `None` if something jumps inside a loop
-pub(crate) fn jumps(graph: &Graph, value: ValueId) -> Option<Vec<ValueId>> {
+pub(crate) fn jumps(graph: &mut Graph, value: ValueId, choices: &HashSet<ValueId>) -> Option<Vec<ValueId>> {
     let mut found = Vec::new();
     let mut seen = HashSet::new();
     let mut pending = vec![value];
     while let Some(node) = pending.pop() {
-        let inst = graph.inst(node);
         if !seen.insert(node) {
             continue;
         }
-        if jumps_itself(inst) {
-            found.push(node);
-            continue;
+        let inst = graph.inst(node).clone();
+        let numbers = inst.operands().iter().copied().filter(|&operand| graph.ty(operand) == Ty::Number);
+        match &inst {
+            Inst::Apply { op: Op::Floor, .. } => found.push(node),
+            // The number of another cell.
+            Inst::Apply { op: Op::Hash, args, .. } => {
+                found.extend(args.iter().map(|&arg| graph.apply(Op::Floor, &[arg])));
+            }
+            Inst::Loop { body, .. } if has_jumps(body) => return None,
+            Inst::Apply { args, .. } if choices.contains(&node) => {
+                found.extend(args.first());
+                pending.extend(numbers);
+            }
+            Inst::Constant(_)
+            | Inst::Boolean(_)
+            | Inst::Input(_)
+            | Inst::Uniform(_)
+            | Inst::Apply { .. }
+            | Inst::Extract(..)
+            | Inst::Loop { .. } => pending.extend(numbers),
         }
-        if matches!(inst, Inst::Loop { body, .. } if has_jumps(body)) {
-            return None;
-        }
-        let numbers = inst.operands().iter().copied();
-        pending.extend(numbers.filter(|&operand| graph.ty(operand) == Ty::Number));
     }
     Some(found)
+}
+
+/// Whether a range, of numbers or of truth values, holds more than one.
+pub(crate) fn varies(graph: &mut Graph, range: Range) -> ValueId {
+    match graph.ty(range.lo) {
+        Ty::Number => graph.apply(Op::Less, &[range.lo, range.hi]),
+        Ty::Bool => {
+            let not_sure = graph.apply(Op::Not, &[range.lo]);
+            graph.apply(Op::And, &[not_sure, range.hi])
+        }
+    }
 }
 
 fn jumps_itself(inst: &Inst) -> bool {

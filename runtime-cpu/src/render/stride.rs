@@ -12,6 +12,11 @@ use super::fields::Fields;
 use super::scene::{Integrator, Scene, Solid, Stride};
 use super::surface::EPSILON;
 use crate::real::{Real, Vec3};
+use vol_compiler::ir::FunctionId;
+use vol_compiler::program::NO_BOUND;
+
+/// How often a step is made shorter in search of a bound, by 4 each time.
+const TRIES: u32 = 8;
 
 /// A place on a ray from which to go on.
 #[derive(Clone, Copy, Debug)]
@@ -57,17 +62,39 @@ impl<F: Fields> Integrator<'_, F> {
                 return;
             }
         };
-        // As far as a step may go, and the box of what is on the way.
-        let reaches: Vec<_> = there.iter().zip(&*values).map(|(ahead, &value)| ahead.reach(value)).collect();
-        let mut corners: [Vec<F::Real>; 6] = std::array::from_fn(|_| Vec::with_capacity(reaches.len()));
-        for (ahead, &reach) in there.iter().zip(&reaches) {
-            let [lo, hi] = ahead.way(self.scene, reach);
+        let mut reaches: Vec<_> =
+            there.iter().zip(&*values).map(|(ahead, &value)| ahead.reach(value)).collect();
+        let mut pending: Vec<usize> = (0..there.len()).filter(|&i| values[i] > F::Real::ZERO).collect();
+        for _ in 0..TRIES {
+            let steepest = self.steepest(steepness, there, &reaches, &pending);
+            let is_known = |found: &(usize, F::Real)| found.1 < F::Real::from_f32(NO_BOUND);
+            let (known, unknown): (Vec<_>, Vec<_>) = pending.into_iter().zip(steepest).partition(is_known);
+            known.into_iter().for_each(|(i, steepest)| values[i] = (values[i] / steepest).min(reaches[i]));
+            if unknown.is_empty() {
+                return;
+            }
+            // Look less far where nothing is known: there may be a jump on the way.
+            pending = unknown.into_iter().map(|(i, _)| i).collect();
+            pending.iter().for_each(|&i| reaches[i] = F::Real::from_f32(0.25) * reaches[i]);
+        }
+        pending.into_iter().for_each(|i| values[i] = F::Real::ZERO);
+    }
+
+    /// Bounds on the slope over the ways of the given places.
+    fn steepest(
+        &mut self,
+        steepness: FunctionId,
+        there: &[Ahead<F::Real>],
+        reaches: &[F::Real],
+        which: &[usize],
+    ) -> Vec<F::Real> {
+        let mut corners: [Vec<F::Real>; 6] = std::array::from_fn(|_| Vec::with_capacity(which.len()));
+        for &i in which {
+            let [lo, hi] = there[i].way(self.scene, reaches[i]);
             corners.iter_mut().zip(lo.into_iter().chain(hi)).for_each(|(column, x)| column.push(x));
         }
         let [steepest] = self.fields.apply(steepness, &corners.each_ref().map(Vec::as_slice));
         self.stats.surface_evaluations += steepest.len() as u64;
-        for ((value, reach), steepest) in values.iter_mut().zip(reaches).zip(steepest) {
-            *value = if *value > F::Real::ZERO { (*value / steepest).min(reach) } else { *value };
-        }
+        steepest
     }
 }

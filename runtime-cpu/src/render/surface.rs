@@ -45,6 +45,8 @@ pub(crate) struct Walker<R> {
 pub(crate) struct Near<R> {
     /// Distance to the nearest surface of the solids in whose boxes it is, safe to walk.
     pub(crate) distance: R,
+    /// The same as the solids' fields give it.
+    pub(crate) value: R,
     /// Index of the solid.
     pub(crate) solid: usize,
     /// Distance along the ray to the next box.
@@ -154,7 +156,8 @@ impl<'a, F: Fields> Integrator<'a, F> {
         sides: &[F::Real],
     ) -> Vec<Near<F::Real>> {
         let far = F::Real::from_f32(FAR);
-        let mut all = vec![Near { distance: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
+        let mut all =
+            vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
         for (index, solid) in scene.solids.iter().enumerate() {
             // Find the walkers in this solid's box, and how far the others are from it.
@@ -173,7 +176,10 @@ impl<'a, F: Fields> Integrator<'a, F> {
             // Keep the smallest distance; the earlier solid on a tie.
             let [mut safe] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
-            safe.iter_mut().for_each(|value| *value = sides[index] * *value);
+            for (&which, value) in here.iter().zip(&mut safe) {
+                *value = sides[index] * *value;
+                all[which].value = all[which].value.min(*value);
+            }
             let ahead = |which: &usize| {
                 let walker: &Walker<F::Real> = &walkers[*which];
                 Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
@@ -205,7 +211,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
                 // Stop inside a solid; on the last step also where it would have been near enough.
                 let patience =
                     if step == MAX_STEPS { tolerance(self.scene, walker.t) } else { F::Real::ZERO };
-                if near.distance < patience {
+                if near.value < patience {
                     hits.push((walker, near.solid));
                     continue;
                 }

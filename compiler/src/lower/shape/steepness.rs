@@ -17,16 +17,13 @@ use crate::lower::{Lowered, Lowerer};
 use crate::ops::Op;
 use crate::ops::range::{LARGEST, Range};
 use crate::passes::enclose;
-use crate::program::Measure;
+use crate::program::{Measure, NO_BOUND};
 use std::rc::Rc;
 use vol_language::source::Span;
 
 /// Ranges are computed without rounding outward: by so much more, ends that are off by some units in the
 /// last place bound what they should.
 const ROOM: f64 = 1.0 + 1.0 / 1024.0;
-
-/// So steep that no step is safe.
-const UNKNOWN: f64 = 1e38;
 
 impl Shape {
     /// The function that bounds the slope of the distance over a box, see
@@ -44,7 +41,7 @@ impl Shape {
         // A range that was held may be too narrow: nothing is known then.
         let (room, held) = (graph.number(ROOM), graph.number(0.5 * LARGEST));
         let roomy = graph.mul(bound, room);
-        let (known, unknown) = (graph.apply(Op::Less, &[bound, held]), graph.number(UNKNOWN));
+        let (known, unknown) = (graph.apply(Op::Less, &[bound, held]), graph.number(f64::from(NO_BOUND)));
         let bound = graph.select(known, roomy, unknown);
         Ok(Some(lowerer.function(&format!("steepness:{name}"), 6, &[bound])))
     }
@@ -214,14 +211,14 @@ fn slope(
     let value = lowerer.call(of, &[Value::Numbers(p.to_vec())])?.scalar();
     let slopes = gradient(lowerer, value, span)?;
     let graph = &mut lowerer.graph;
-    let Some(jumps) = enclose::jumps(graph, value) else { return Ok(None) };
+    let Some(jumps) = enclose::jumps(graph, value, &lowerer.choices) else { return Ok(None) };
     let Some(ranges) = enclose::enclose(graph, &[slopes, jumps].concat(), place) else { return Ok(None) };
     let (slopes, jumps) = ranges.split_at(3);
     let components: Vec<ValueId> = slopes.iter().map(|range| range.magnitude(graph)).collect();
     let mut steepest = graph.length(&components);
     let anything = graph.number(LARGEST);
-    for jump in jumps {
-        let may = graph.apply(Op::Less, &[jump.lo, jump.hi]);
+    for &jump in jumps {
+        let may = enclose::varies(graph, jump);
         steepest = graph.select(may, anything, steepest);
     }
     Ok(Some(steepest))

@@ -148,17 +148,19 @@ fn what_jumps_is_found() {
     let x = graph.input(0);
     let whole = graph.apply(Op::Floor, &[x]);
     let part = graph.sub(x, whole);
-    assert_eq!(jumps(&graph, part), Some(vec![whole]));
-    // Deciding by it is no jump.
+    let none = HashSet::new();
+    assert_eq!(jumps(&mut graph, part, &none), Some(vec![whole]));
+    // Deciding by it is a jump only if an author does.
     let zero = graph.number(0.0);
     let side = graph.apply(Op::Less, &[zero, whole]);
     let picked = graph.select(side, x, zero);
-    assert_eq!(jumps(&graph, picked), Some(vec![]));
+    assert_eq!(jumps(&mut graph, picked, &none), Some(vec![]));
+    assert_eq!(jumps(&mut graph, picked, &HashSet::from([picked])), Some(vec![side]));
     // Inside a loop it cannot be told.
     let (state, one) = (graph.placeholder(), graph.number(1.0));
     let next = graph.apply(Op::Floor, &[state]);
     let goes_on = graph.apply(Op::Less, &[one, state]);
     let repeated = Repeated { state: &[state], first: &[x], next: &[next], goes_on };
     let last = graph.repeat(3, repeated)[0];
-    assert_eq!(jumps(&graph, last), None);
+    assert_eq!(jumps(&mut graph, last, &none), None);
 }

@@ -3,6 +3,7 @@
 
 struct Near {
     distance: f32,
+    value: f32,
     solid: u32,
     gap: f32,
     rest: f32,
@@ -97,7 +98,7 @@ fn nearest(
     t: f32,
     before: f32,
 ) -> Near {
-    var near = Near(FAR, 0u, FAR, 0.0);
+    var near = Near(FAR, FAR, 0u, FAR, 0.0);
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let span = (*spans)[solid];
         let some = span.entry <= span.leave;
@@ -107,6 +108,7 @@ fn nearest(
             near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
+            near.value = min(near.value, seen);
             let safe = shorten(solid, ray, t, t - before, seen);
             let closer = safe < near.distance;
             near.distance = select(near.distance, safe, closer);
@@ -137,7 +139,7 @@ fn trace(ray: Ray) -> Contact {
     for (var count = 1u; count <= MAX_STEPS; count++) {
         let near = nearest(ray, &spans, &sides, t, before);
         // Stop inside a solid; on the last step also where it would have been near enough.
-        hit = near.distance < select(0.0, tolerance(t), count == MAX_STEPS);
+        hit = near.value < select(0.0, tolerance(t), count == MAX_STEPS);
         solid = near.solid;
         // Walk as far as nothing can be, at least a fortieth of a pixel.
         let next = t + advance(near, count, stride(t));

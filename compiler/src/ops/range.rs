@@ -37,6 +37,11 @@ impl Range {
         Self { lo: value, hi: value }
     }
 
+    /// As far to either side of 0.
+    pub(crate) fn symmetric(graph: &mut Graph, reach: ValueId) -> Self {
+        Self { lo: graph.apply(Op::Neg, &[reach]), hi: reach }
+    }
+
     /// Whether it is one number.
     pub(crate) fn is_point(self) -> bool {
         self.lo == self.hi

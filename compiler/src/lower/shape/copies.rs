@@ -10,6 +10,7 @@ use crate::ir::ValueId;
 use crate::ir::graph::Graph;
 use crate::lower::Lowerer;
 use crate::ops::Op;
+use crate::ops::range::Range;
 use crate::program::{Extent, Run};
 use std::f64::consts::TAU;
 use vol_language::source::Span;
@@ -60,6 +61,27 @@ impl Copies {
                 places
             }
             Self::Around { count, overlap } => around(graph, p, *count, *overlap),
+        }
+    }
+
+    /// Where copies are asked for positions in a box, in their own coordinates: up to so many periods off,
+    /// or as far off as the position where there are no more copies.
+    pub(super) fn reach(&self, graph: &mut Graph, place: [Range; 3]) -> [Range; 3] {
+        match self {
+            Self::Along { axes, overlap } => [0, 1, 2].map(|axis| {
+                let Some(row) = axes[axis] else { return place[axis] };
+                let cells = graph.number(f64::from(1 + overlap));
+                let within = graph.mul(row.period, cells);
+                let beyond = place[axis].magnitude(graph);
+                let reach = if row.count == 0 { within } else { graph.max(within, beyond) };
+                Range::symmetric(graph, reach)
+            }),
+            Self::Around { .. } => {
+                let sides = [place[0], place[2]].map(|range| range.magnitude(graph));
+                let reach = graph.length(&sides);
+                let across = Range::symmetric(graph, reach);
+                [across, place[1], across]
+            }
         }
     }
 

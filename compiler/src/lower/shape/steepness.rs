@@ -6,7 +6,7 @@
 //! most 2 steep over a box from 0 to 1.
 //!
 //! Distances proper are 1 steep and cost nothing; noises and waves are as steep everywhere as anywhere.
-//! What has no local bound (copies, bends, curves inside fields) is as steep as each frame finds it
+//! What has no local bound (bends, curves inside fields) is as steep as each frame finds it
 //! to be over the whole solid.
 
 use super::transform::Transform;
@@ -71,7 +71,13 @@ impl Shape {
             Kind::Transformed { child, transform } => {
                 self.transformed(lowerer, child, transform, place, span)
             }
-            Kind::Repeated { .. } => self.measured(lowerer, span),
+            Kind::Repeated { child, copies } => {
+                if !child.is_steep() {
+                    return Ok(None);
+                }
+                let place = copies.reach(&mut lowerer.graph, place);
+                child.bound(lowerer, place, span)
+            }
             Kind::Rounded { child, .. } | Kind::Shell { child, .. } => child.bound(lowerer, place, span),
             Kind::Displaced { child, amount, span } => {
                 let Some(slope) = slope(lowerer, amount, place, *span)? else {

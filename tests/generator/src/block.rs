@@ -63,6 +63,10 @@ impl Generator<'_> {
                     let coordinates = Coordinates { radius: true, along: true };
                     Piece { coordinates, ..Piece::atom("cylinder(0.7, 1.1)") }
                 }
+                Type::Shape if self.source.once_in(8) => {
+                    let bulb = self.mandelbulb(place);
+                    bulb.unwrap_or_else(|| self.plain_shape())
+                }
                 // What a medium keeps is known at compile time.
                 Type::Bool if key.name == "conserve_mass" => Piece::atom("false"),
                 _ => self.coerced(&key.ty, place),

@@ -69,8 +69,16 @@ impl Generator<'_> {
     fn can_call(&self, signature: &Signature, place: Place) -> bool {
         // A tube is no solid.
         let tube = signature.result == Type::Shape && signature.params.iter().any(|p| p.ty == Type::Curve);
-        // Curl has no slope.
-        !(tube && place.solid || signature.name == "curl" && place.smooth)
+        // Curl has no slope. A Mandelbulb is neither blended nor grown: it stands alone in its block.
+        let curl = signature.name == "curl" && place.smooth;
+        !(tube && place.solid || curl || signature.name == "mandelbulb")
+    }
+
+    /// A Mandelbulb; nothing if the library has none.
+    pub(crate) fn mandelbulb(&mut self, place: Place) -> Option<Piece> {
+        let signature =
+            self.library.signatures.iter().find(|signature| signature.name == "mandelbulb").cloned()?;
+        Some(self.call_of(&signature, place))
     }
 
     fn call_of(&mut self, signature: &Signature, place: Place) -> Piece {

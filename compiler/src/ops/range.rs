@@ -92,9 +92,6 @@ pub(super) fn mul(graph: &mut Graph, _: u32, x: &[Range]) -> Option<Vec<Range>> 
 
 /// The products of two ranges.
 pub(super) fn product(graph: &mut Graph, a: Range, b: Range) -> Range {
-    if a == b {
-        return square(graph, a);
-    }
     for (point, other) in [(a, b), (b, a)] {
         if let Some(factor) = graph.constant(point.lo).filter(|_| point.is_point()) {
             let ends = [other.lo, other.hi].map(|end| graph.mul(point.lo, end));
@@ -117,8 +114,8 @@ fn ends(range: Range) -> Vec<ValueId> {
     if range.is_point() { vec![range.lo] } else { vec![range.lo, range.hi] }
 }
 
-/// The products of numbers with themselves.
-fn square(graph: &mut Graph, a: Range) -> Range {
+/// The products of numbers with themselves, which are not negative.
+pub(crate) fn square(graph: &mut Graph, a: Range) -> Range {
     let size = absolute(graph, a);
     let most = graph.number(LARGEST);
     let (lo, hi) = (graph.mul(size.lo, size.lo), graph.mul(size.hi, size.hi));

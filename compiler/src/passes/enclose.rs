@@ -14,7 +14,7 @@ mod repeat;
 use super::gradient::varying;
 use crate::ir::graph::Graph;
 use crate::ir::{Function, Inst, ValueId};
-use crate::ops::range::Range;
+use crate::ops::range::{Range, square};
 use crate::ops::{self, Op, Ty};
 use std::collections::{HashMap, HashSet};
 
@@ -46,8 +46,10 @@ fn enclose_all(graph: &mut Graph, values: &[ValueId], known: &mut Ranges) -> Opt
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Uniform(_) | Inst::Input(_) => continue,
             Inst::Extract(tuple, index) => vec![*known.get(&tuple)?.get(index as usize)?],
             Inst::Apply { op, data, args } => {
-                let args: Vec<Range> = args.iter().map(|&arg| range(known, arg)).collect();
-                apply(graph, op, data, &args)?
+                let ranges: Vec<Range> = args.iter().map(|&arg| range(known, arg)).collect();
+                // One number with itself; two may have the same range.
+                let squared = op == Op::Mul && args[0] == args[1];
+                if squared { vec![square(graph, ranges[0])] } else { apply(graph, op, data, &ranges)? }
             }
             Inst::Loop { most, body, args } => repeat::ranges(graph, known, most, &body, &args)?,
         };

@@ -110,6 +110,21 @@ fn small_boxes_are_tight() {
 }
 
 #[test]
+fn equal_ranges_are_not_equal_numbers() {
+    let (mut graph, mut random) = (Graph::default(), Random::new(4));
+    let waves = [0, 1].map(|i| {
+        let x = graph.input(i);
+        graph.apply(Op::Sin, &[x])
+    });
+    let product = graph.mul(waves[0], waves[1]);
+    assert!(assert_encloses(&mut graph, product, &mut random, 100).is_some());
+    let squared = graph.mul(waves[0], waves[0]);
+    let place = place(&mut graph);
+    let range = enclose(&mut graph, &[squared], place).expect("has a range")[0];
+    assert_eq!(graph.constant(range.lo), Some(0.0));
+}
+
+#[test]
 fn curves_have_none() {
     let mut graph = Graph::default();
     let p = [0, 1, 2].map(|i| graph.input(i));

@@ -1,7 +1,7 @@
 //! `docs/shapes.md` and `docs/figures.md`: every scene on them is right on both backends, and none is missing.
 
 use crate::support::{compile, ensure, frame};
-use crate::{differential, docs, examples};
+use crate::{differential, docs, examples, spec};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::backend::Device;
@@ -58,23 +58,15 @@ fn fields(program: &Program) -> Result<(), Failed> {
 
 /// Each block under a name, behind the last one that stands under none.
 fn scenes(page: &str) -> Vec<(String, String)> {
-    let (mut scenes, mut name, mut shared) = (Vec::new(), String::new(), String::new());
-    let mut block: Option<String> = None;
-    for line in text_of(page).lines() {
-        match (line, &mut block) {
-            ("```", Some(text)) if name.is_empty() => {
-                shared = std::mem::take(text);
-                block = None;
-            }
-            ("```", Some(text)) => {
-                scenes.push((name.clone(), format!("{shared}{text}")));
-                block = None;
-            }
-            (line, Some(text)) => *text += &format!("{line}\n"),
-            ("```vol", None) => block = Some(String::new()),
-            (line, None) if line.starts_with("### ") => name = line[4..].trim_matches('`').to_owned(),
-            (line, None) if line.starts_with("## ") => name.clear(),
-            (_, None) => {}
+    let (text, mut scenes, mut shared) = (text_of(page), Vec::new(), String::new());
+    let lines: Vec<&str> = text.lines().collect();
+    for (first_line, block) in spec::blocks(&text) {
+        // The fence stands before the first line, which counts from 1.
+        let above = lines[..first_line - 2].iter().rev();
+        let heading = above.copied().find(|line| line.starts_with("## ") || line.starts_with("### "));
+        match heading.and_then(|line| line.strip_prefix("### ")) {
+            Some(name) => scenes.push((name.trim_matches('`').to_owned(), format!("{shared}{block}"))),
+            None => shared = block,
         }
     }
     scenes

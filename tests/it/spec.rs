@@ -56,7 +56,7 @@ fn renders(block: &str) -> Result<(), Failed> {
 }
 
 /// The fenced `vol` blocks of a page with the line on which each begins.
-fn blocks(page: &str) -> Vec<(usize, String)> {
+pub(crate) fn blocks(page: &str) -> Vec<(usize, String)> {
     let mut blocks = Vec::new();
     let mut open: Option<(usize, String)> = None;
     for (number, line) in page.lines().enumerate() {

@@ -3,6 +3,7 @@
 //! Twin: `compiler/src/wgsl/render/camera.wgsl`.
 
 use super::scene::Scene;
+use super::surface::EPSILON;
 use crate::real::{Real, Vec3, add, dot, length, scale};
 
 /// "Nowhere": farther than anything, and small enough that no product of two overflows f32. Boxes
@@ -41,6 +42,12 @@ impl<R: Real> Span<R> {
     /// Whether any of the ray is in it.
     pub(crate) fn is_some(&self) -> bool {
         self.entry <= self.exit
+    }
+
+    /// A little longer than rounding can make it.
+    pub(super) fn loosened(self) -> Self {
+        let slack = R::from_f32(16.0 * EPSILON);
+        Self { entry: self.entry - slack * self.entry, exit: self.exit + slack * self.exit }
     }
 }
 

@@ -168,15 +168,13 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// Parts of the rays where a solid's box is within the cone.
     fn cone_spans(&self, cones: &[Cone<F::Real>]) -> Vec<Vec<Span<F::Real>>> {
-        let slack = F::Real::from_f32(16.0 * EPSILON);
         let span = |solid: &Solid<F::Real>, cone: &Cone<F::Real>| {
             let ray = &cone.shadow.ray;
             let below = sub(solid.lo, ray.origin).map(Real::abs);
             let above = sub(solid.hi, ray.origin).map(Real::abs);
             let farthest = length([0, 1, 2].map(|axis| below[axis].max(above[axis])));
             let width = wide(cone.slope) * farthest.min(cone.shadow.length);
-            let exact = slab(ray, solid.lo.map(|x| x - width), solid.hi.map(|x| x + width));
-            Span { entry: exact.entry - slack * exact.entry, exit: exact.exit + slack * exact.exit }
+            slab(ray, solid.lo.map(|x| x - width), solid.hi.map(|x| x + width)).loosened()
         };
         let solids = self.scene.solids.iter();
         solids.map(|solid| cones.iter().map(|cone| span(solid, cone)).collect()).collect()

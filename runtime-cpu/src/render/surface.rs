@@ -133,14 +133,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
     /// Parts of the rays in the box of each solid, a little longer than rounding can make them; all
     /// of the ray for a solid that is seen from within, since it ends where the box may end.
     pub(crate) fn object_spans(&self, rays: &[Ray<F::Real>], sides: &[F::Real]) -> Vec<Vec<Span<F::Real>>> {
-        let slack = F::Real::from_f32(16.0 * EPSILON);
         let solids = self.scene.solids.iter().zip(sides);
         let spans = solids.map(|(solid, &side)| {
             let span = |ray| {
-                let exact = slab(ray, solid.lo, solid.hi);
-                let exit = exact.exit + slack * exact.exit;
-                let exit = if side < F::Real::ZERO { F::Real::from_f32(FAR) } else { exit };
-                Span { entry: exact.entry - slack * exact.entry, exit }
+                let span = slab(ray, solid.lo, solid.hi).loosened();
+                Span { exit: if side < F::Real::ZERO { F::Real::from_f32(FAR) } else { span.exit }, ..span }
             };
             rays.iter().map(span).collect()
         });

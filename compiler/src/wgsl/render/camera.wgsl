@@ -43,6 +43,12 @@ fn slab(ray: Ray, lo: vec3f, hi: vec3f) -> Span {
     return span;
 }
 
+// A little longer than rounding can make it.
+fn loosened(span: Span) -> Span {
+    let slack = 16.0 * EPSILON;
+    return Span(span.entry - (slack * span.entry), span.leave + (slack * span.leave));
+}
+
 fn contains(lo: vec3f, hi: vec3f, point: vec3f) -> bool {
     return all(lo <= point) & all(point <= hi);
 }

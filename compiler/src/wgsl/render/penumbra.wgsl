@@ -71,11 +71,10 @@ fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> 
         let hi = word3(at + 4u);
         let farthest = length3(max(abs(lo - ray.origin), abs(hi - ray.origin)));
         let width = (CLEAR * slope) * min(farthest, distance);
-        let span = slab(ray, lo - vec3f(width), hi + vec3f(width));
-        let slack = 16.0 * EPSILON;
+        let span = loosened(slab(ray, lo - vec3f(width), hi + vec3f(width)));
         let there = vol_input[at] != 0.0;
-        spans[solid].entry = select(FAR, span.entry - (slack * span.entry), there);
-        spans[solid].leave = select(-FAR, span.leave + (slack * span.leave), there);
+        spans[solid].entry = select(FAR, span.entry, there);
+        spans[solid].leave = select(-FAR, span.leave, there);
     }
     return spans;
 }

@@ -80,11 +80,10 @@ fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> arr
     var spans: array<Span, OBJECT_SLOTS>;
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
-        let span = slab(ray, word3(at + 1u), word3(at + 4u));
-        let slack = 16.0 * EPSILON;
+        let span = loosened(slab(ray, word3(at + 1u), word3(at + 4u)));
         let there = vol_input[at] != 0.0;
-        spans[solid].entry = select(FAR, span.entry - (slack * span.entry), there);
-        let leave = select(span.leave + (slack * span.leave), FAR, (*sides)[solid] < 0.0);
+        spans[solid].entry = select(FAR, span.entry, there);
+        let leave = select(span.leave, FAR, (*sides)[solid] < 0.0);
         spans[solid].leave = select(-FAR, leave, there);
     }
     return spans;

@@ -135,3 +135,41 @@ fn catch_interrupts() -> Result<(), Failure> {
 fn stop_if_cancelled() -> Result<(), Failure> {
     if CANCELLED.load(Ordering::Relaxed) { Err(Failure::Interrupted) } else { Ok(()) }
 }
+
+/// The size scaled down so that no side is longer than `longest`.
+fn at_most([width, height]: [u32; 2], longest: u32) -> [u32; 2] {
+    let side = width.max(height);
+    if side <= longest {
+        return [width, height];
+    }
+    [width, height].map(|length| (u64::from(length) * u64::from(longest) / u64::from(side)).max(1) as u32)
+}
+
+/// Writes rows to standard output, the first column aligned left and the others right.
+fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let mut out = io::stdout().lock();
+    for row in rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
+            0 => format!("{cell:<width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        let line = cells.collect::<Vec<_>>().join("  ");
+        writeln!(out, "{}", line.trim_end()).map_err(|error| Failure::stdout(&error))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::at_most;
+
+    #[test]
+    fn sizes_keep_their_aspect() {
+        assert_eq!(at_most([960, 540], 256), [256, 144]);
+        assert_eq!(at_most([32, 18], 256), [32, 18]);
+        assert_eq!(at_most([1, 16384], 256), [1, 256]);
+    }
+}

@@ -8,6 +8,7 @@
 //! Nothing in here prints or exits: a [`failure::Failure`] goes up to `main`.
 
 pub mod backend;
+pub mod bench;
 pub mod compare;
 pub mod explain;
 pub mod failure;

@@ -18,4 +18,4 @@ pub mod math;
 mod real;
 pub mod render;
 
-pub use render::{Stats, StepChoice, choose_step, render, render_reference};
+pub use render::{Stats, StepChoice, choose_step, reference_pixels, render, render_reference};

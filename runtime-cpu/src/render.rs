@@ -37,11 +37,16 @@ pub use pilot::{StepChoice, choose_step};
 use crate::interp::Tapes;
 use fields::{Batch, Reference};
 use film::{Radiance, Watch, expose};
-use scene::{Batches, Scene};
+use rayon::prelude::*;
+use sampling::Mean;
+use scene::{Batches, Integrator, Scene};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use vol_compiler::frame::{Frame, Image, Job, Pixel};
 use vol_compiler::program::Program;
+
+/// Pixels of a reference that one thread takes at a time: they are slow, and few.
+const REFERENCE_PIXELS: usize = 4;
 
 /// What a render did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -133,4 +138,24 @@ pub fn render_reference(program: &Program, frame: &Frame, job: &Job) -> Vec<[f64
         [r, g, b, tr, tg, tb, pixel.depth.unwrap_or(f64::INFINITY)]
     };
     pixels.into_iter().map(flat).collect()
+}
+
+/// [`render_reference`] for some pixels only, given as column and row. Nothing if `cancelled` was set
+/// before the last of them.
+#[must_use]
+pub fn reference_pixels(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    pixels: &[[u32; 2]],
+    cancelled: &AtomicBool,
+) -> Option<Vec<[f64; 3]>> {
+    let scene = Scene::<f64>::new(frame, job);
+    let render = |pixels: &[[u32; 2]]| {
+        let mut integrator = Integrator::new(&scene, Reference::new(program, frame), Batches::DEFAULT);
+        let means = integrator.sample_pixels(pixels, &job.sampling, cancelled)?;
+        Some(means.iter().map(Mean::radiance).map(|pixel| pixel.color).collect::<Vec<_>>())
+    };
+    let parts: Option<Vec<_>> = pixels.par_chunks(REFERENCE_PIXELS).map(render).collect();
+    Some(parts?.into_iter().flatten().collect())
 }

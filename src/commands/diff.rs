@@ -1,7 +1,5 @@
 //! `vol diff`: the CPU, the GPU and the f64 reference on one scene.
 
-use std::io::{self, Write as _};
-
 use vol::backend::{Choice, Device};
 use vol::compare::{self, FieldReport, GPU_IMAGE, ImageReport, PRECISION};
 use vol::failure::Failure;
@@ -9,7 +7,7 @@ use vol_compiler::frame::{Frame, Job, Sampling};
 use vol_compiler::program::{Field, Program};
 
 use super::values::Size;
-use super::{CANCELLED, Prepared};
+use super::{CANCELLED, Prepared, at_most, print_table};
 use crate::cli;
 
 /// Longest side of the compared pictures where none is asked for, in pixels.
@@ -177,40 +175,4 @@ impl PictureRow {
 
 fn verdict(passes: bool) -> String {
     if passes { "ok" } else { "FAILED" }.to_owned()
-}
-
-/// The size scaled down so that no side is longer than `longest`.
-fn at_most([width, height]: [u32; 2], longest: u32) -> [u32; 2] {
-    let side = width.max(height);
-    if side <= longest {
-        return [width, height];
-    }
-    [width, height].map(|length| (u64::from(length) * u64::from(longest) / u64::from(side)).max(1) as u32)
-}
-
-/// Writes rows to standard output, the first column aligned left and the others right.
-fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut out = io::stdout().lock();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
-            0 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        let line = cells.collect::<Vec<_>>().join("  ");
-        writeln!(out, "{}", line.trim_end()).map_err(|error| Failure::stdout(&error))?;
-    }
-    Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn sizes_keep_their_aspect() {
-        assert_eq!(super::at_most([960, 540], 256), [256, 144]);
-        assert_eq!(super::at_most([32, 18], 256), [32, 18]);
-        assert_eq!(super::at_most([1, 16384], 256), [1, 256]);
-    }
 }

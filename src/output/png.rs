@@ -19,9 +19,17 @@ static CODE_STARTS: LazyLock<[f32; 255]> =
 /// What the writer reports.
 pub fn write(picture: &Image, out: &mut dyn Write) -> io::Result<()> {
     let codes: Vec<u8> = picture.pixels.iter().flat_map(|pixel| pixel.color.map(srgb_code)).collect();
+    write_codes(&codes, [picture.width, picture.height], out)
+}
+
+/// Writes rows of sRGB pixels, 8 bit, as a PNG file.
+///
+/// # Errors
+/// What the writer reports, among it that `codes` are not three for each pixel.
+pub fn write_codes(codes: &[u8], [width, height]: [u32; 2], out: &mut dyn Write) -> io::Result<()> {
     // Fixed settings: the same picture gives the same bytes.
     PngEncoder::new_with_quality(out, CompressionType::Default, FilterType::Adaptive)
-        .write_image(&codes, picture.width, picture.height, ExtendedColorType::Rgb8)
+        .write_image(codes, width, height, ExtendedColorType::Rgb8)
         .map_err(|error| match error {
             image::ImageError::IoError(error) => error,
             other => io::Error::other(other),

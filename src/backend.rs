@@ -12,6 +12,7 @@ use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
+use vol_runtime_cpu::{Method, NoMajorant};
 
 use crate::failure::Failure;
 
@@ -57,6 +58,9 @@ pub struct Rendered {
     pub image: Image,
     /// What was done for it.
     pub counts: Counts,
+    /// Standard error of the colour, root mean square over the picture relative to that of the colour;
+    /// known of random paths only.
+    pub standard_error: Option<f32>,
 }
 
 fn counts_of_cpu(stats: &vol_runtime_cpu::Stats) -> Counts {
@@ -183,17 +187,65 @@ impl Renderer<'_> {
             Target::Cpu(_) => {
                 let rendered = vol_runtime_cpu::render(self.program, frame, job, None, progress, cancelled);
                 let (image, stats) = rendered.ok_or(Failure::Interrupted)?;
-                Ok(Rendered { image, counts: counts_of_cpu(&stats) })
+                Ok(Rendered { image, counts: counts_of_cpu(&stats), standard_error: None })
             }
             #[cfg(feature = "gpu")]
             Target::Gpu(gpu, renderer) => {
                 let rendered = renderer.render(gpu, self.program, frame, job, progress, cancelled);
                 let rendered = rendered.map_err(|error| gpu_failure(&error))?;
                 let (image, counts) = rendered.ok_or(Failure::Interrupted)?;
-                Ok(Rendered { image, counts })
+                Ok(Rendered { image, counts, standard_error: None })
             }
         }
     }
+}
+
+impl Renderer<'_> {
+    /// [`Renderer::render`] by one of the methods; all but the comb run on the CPU only.
+    ///
+    /// # Errors
+    /// A usage failure on another device, a content failure if the method cannot render the scene, and
+    /// those of [`Renderer::render`].
+    pub fn render_by(
+        &self,
+        method: Method,
+        frame: &Frame,
+        job: &Job,
+        progress: &(dyn Fn(u64) + Sync),
+        cancelled: &AtomicBool,
+    ) -> Result<Rendered, Failure> {
+        match &self.target {
+            _ if method == Method::Comb => self.render(frame, job, progress, cancelled),
+            Target::Cpu(_) => {
+                let rendered =
+                    vol_runtime_cpu::render_by(method, self.program, frame, job, progress, cancelled);
+                let (image, stats) =
+                    rendered.map_err(|error| self.no_majorant(error))?.ok_or(Failure::Interrupted)?;
+                let standard_error = match method {
+                    Method::MonteCarlo { .. } => Some(relative(stats.variance, &image)),
+                    Method::Comb | Method::FixedStep { .. } => None,
+                };
+                Ok(Rendered { image, counts: counts_of_cpu(&stats), standard_error })
+            }
+            #[cfg(feature = "gpu")]
+            Target::Gpu(..) => Err(Failure::usage("only the comb runs on the GPU")),
+        }
+    }
+
+    fn no_majorant(&self, error: NoMajorant) -> Failure {
+        let name = &self.program.media[error.medium].name;
+        let text = format!("no bound is known for the extinction of the medium `{name}`");
+        let help = "random paths need one: write the density so that it has a largest value, as in `min(100, …)`, \
+                    or take another integrator";
+        Failure::content(text).with_help(help)
+    }
+}
+
+/// The root of a sum of squares over the pixels and channels of a picture, relative to the picture's own.
+fn relative(sum: f64, image: &Image) -> f32 {
+    let squares = image.pixels.iter().flat_map(|pixel| pixel.color).map(|c| f64::from(c).powi(2));
+    let whole: f64 = squares.sum();
+    if sum > 0.0 { (sum / whole.max(f64::MIN_POSITIVE)).sqrt() as f32 } else { 0.0 }
 }
 
 #[cfg(feature = "gpu")]

@@ -80,16 +80,22 @@ pub(crate) struct Render {
     /// CPU threads [default: as many as the machine has cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Seed of the sample pattern; it is the same for all seeds at present, so the picture does not
-    /// depend on it, but it is recorded in --stats
+    /// Seed of what is random: the paths of `--integrator monte-carlo` and `--jitter`. Nothing else is;
+    /// it is recorded in --stats
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) seed: u64,
+    /// How media along rays are integrated; all but `comb` are references to compare it with, on the CPU only
+    #[arg(long, value_enum, default_value_t = Integrator::Comb)]
+    pub(crate) integrator: Integrator,
+    /// Settings of the reference integrators.
+    #[command(flatten)]
+    pub(crate) fixed: FixedStep,
     /// Error allowed from sampling media, root mean square over the picture relative to its
-    /// brightness; the distance between samples is chosen to meet it
-    #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = values::max_error)]
-    pub(crate) max_error: f32,
+    /// brightness; the distance between samples of the comb is chosen to meet it [default: 0.01]
+    #[arg(long, value_name = "E", value_parser = values::max_error)]
+    pub(crate) max_error: Option<f32>,
     /// Rays per pixel, 1 to 4096, instead of the scene's; with an adaptive error the most of them
-    /// [default: 1, with an adaptive error 65]
+    /// [default: 1, with an adaptive error 65]; of `--integrator monte-carlo` the paths [default: 64]
     #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
     pub(crate) samples: Option<u32>,
     /// Standard error of a pixel relative to its brightness at which it takes no more samples,
@@ -99,6 +105,23 @@ pub(crate) struct Render {
     /// Write what was done and how long it took to this JSON file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
+}
+
+/// Settings of `--integrator fixed-step`.
+#[derive(Debug, Args)]
+pub(crate) struct FixedStep {
+    /// Fixed step along camera rays, in scene units [default: a 96th of the diagonal of the box around the media]
+    #[arg(long, value_name = "S", value_parser = values::step, allow_negative_numbers = true)]
+    pub(crate) step: Option<f32>,
+    /// Fixed step towards lights [default: as --step]
+    #[arg(long, value_name = "S", value_parser = values::step, allow_negative_numbers = true)]
+    pub(crate) light_step: Option<f32>,
+    /// Sample each fixed step at a random place, by --seed, instead of in its middle
+    #[arg(long)]
+    pub(crate) jitter: bool,
+    /// How fixed steps find tubes [default: cells]
+    #[arg(long, value_enum)]
+    pub(crate) tube_bounds: Option<TubeBounds>,
 }
 
 /// Arguments of `vol check`.
@@ -198,6 +221,26 @@ pub(crate) enum Backend {
     Cpu,
     Gpu,
     Auto,
+}
+
+/// How media along rays are integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Integrator {
+    /// Samples on one comb per ray, walls placed by distances, steps chosen for --max-error
+    Comb,
+    /// The plain marcher: even steps, light added after the step's absorption, first order
+    FixedStep,
+    /// Random free paths: unbiased, the error falls with the root of --samples
+    MonteCarlo,
+}
+
+/// How fixed steps find tubes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TubeBounds {
+    /// Steps through the box around the media; outside the boxes along the tube nothing is evaluated
+    Cells,
+    /// Walking the distance to the axis less the radius there, which may overshoot where it varies
+    SphereMarch,
 }
 
 /// What evaluates a field.

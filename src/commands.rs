@@ -8,6 +8,7 @@ mod compile;
 mod diff;
 mod explain;
 mod fmt;
+mod method;
 mod params;
 mod progress;
 mod query;

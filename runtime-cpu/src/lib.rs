@@ -18,4 +18,7 @@ pub mod math;
 mod real;
 pub mod render;
 
-pub use render::{Stats, StepChoice, choose_step, reference_pixels, render, render_reference};
+pub use render::{
+    Method, NoMajorant, Stats, StepChoice, TubeBounds, choose_step, fixed_step_default, reference_pixels, render,
+    render_by, render_reference,
+};

@@ -28,6 +28,10 @@ pub(crate) trait Real:
     const ONE: Self;
     /// An f32 as it is.
     fn from_f32(value: f32) -> Self;
+    /// An f64, rounded.
+    fn from_f64(value: f64) -> Self;
+    /// The number as an f64, as it is.
+    fn to_f64(self) -> f64;
     /// A whole number below 2^24.
     fn from_index(index: i32) -> Self;
     /// A whole number below 2^24 as an integer.
@@ -67,6 +71,14 @@ impl Real for f32 {
 
     fn from_f32(value: f32) -> Self {
         value
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value as Self
+    }
+
+    fn to_f64(self) -> f64 {
+        f64::from(self)
     }
 
     fn from_index(index: i32) -> Self {
@@ -115,6 +127,14 @@ impl Real for f64 {
 
     fn from_f32(value: f32) -> Self {
         Self::from(value)
+    }
+
+    fn from_f64(value: f64) -> Self {
+        value
+    }
+
+    fn to_f64(self) -> f64 {
+        self
     }
 
     fn from_index(index: i32) -> Self {

@@ -12,6 +12,10 @@
 //!
 //! `pilot` chooses the comb's step.
 //!
+//! Two further ways through the media, for comparison and on the CPU only, are behind `method`: `fixed_step`
+//! is the plain marcher of the literature, `monte_carlo` an unbiased oracle that shares nothing with the comb.
+//! Both read the media through `matter`.
+//!
 //! In f32 each operation is rounded by itself, in an order that neither threads nor batches change;
 //! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
 
@@ -19,10 +23,16 @@ mod camera;
 mod comb;
 mod fields;
 mod film;
+mod fixed_step;
+mod majorant;
+mod matter;
 mod medium;
+mod method;
+mod monte_carlo;
 mod occlusion;
 mod penumbra;
 mod pilot;
+mod random;
 mod sampling;
 mod scene;
 mod shade;
@@ -31,7 +41,9 @@ mod stride;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod tube_axis;
 
+pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
 pub use pilot::{StepChoice, choose_step};
 
 use crate::interp::Tapes;
@@ -63,6 +75,9 @@ pub struct Stats {
     pub medium_samples: u64,
     /// Nodes of shadow rays inside media.
     pub shadow_samples: u64,
+    /// Sum over pixels and channels of the squared standard error, as the spread of each pixel's samples has
+    /// it; 0 with one sample per pixel.
+    pub variance: f64,
     /// From the call to the picture.
     pub milliseconds: f64,
 }
@@ -76,6 +91,7 @@ impl Stats {
         self.region_evaluations += part.region_evaluations;
         self.medium_samples += part.medium_samples;
         self.shadow_samples += part.shadow_samples;
+        self.variance += part.variance;
     }
 }
 
@@ -108,10 +124,21 @@ fn render_batches(
     batches: Batches,
     watch: &Watch<'_>,
 ) -> Option<(Image, Stats)> {
+    render_scene(program, frame, job, &Scene::new(frame, job), batches, watch)
+}
+
+/// [`render`] of a scene that may say how its media are integrated.
+fn render_scene(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    scene: &Scene<f32>,
+    batches: Batches,
+    watch: &Watch<'_>,
+) -> Option<(Image, Stats)> {
     let started = Instant::now();
     let tapes = Tapes::new(program);
-    let scene = Scene::<f32>::new(frame, job);
-    let (pixels, mut stats) = expose(&scene, job, batches, &|| Batch::new(&tapes, frame), watch)?;
+    let (pixels, mut stats) = expose(scene, job, batches, &|| Batch::new(&tapes, frame), watch)?;
     stats.milliseconds = started.elapsed().as_secs_f64() * 1e3;
     let pixels = pixels.into_iter().map(pixel).collect();
     Some((Image { width: job.size[0], height: job.size[1], pixels }, stats))

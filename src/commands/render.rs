@@ -7,8 +7,9 @@ use vol::backend::{Choice, Device, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
-use vol_compiler::frame::{Counts, Job};
+use vol_compiler::frame::Counts;
 
+use super::method;
 use super::progress::Progress;
 use super::stats::{Phases, Stats, timed};
 use super::values::{FrameRange, Size};
@@ -17,6 +18,7 @@ use crate::cli;
 
 pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
     let started = Instant::now();
+    method::check(arguments)?;
     check_outputs(arguments)?;
     super::catch_interrupts()?;
     if let Some(threads) = arguments.threads {
@@ -27,6 +29,8 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
     let device = Device::open(match arguments.backend {
         cli::Backend::Cpu => Choice::Cpu,
         cli::Backend::Gpu => Choice::Gpu,
+        // The references have no twin for the GPU.
+        cli::Backend::Auto if arguments.integrator != cli::Integrator::Comb => Choice::Cpu,
         cli::Backend::Auto => Choice::Auto,
     })?;
     let mut stats = new_stats(arguments, &prepared, &device);
@@ -70,10 +74,13 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         size: arguments.size.map_or(session.program.render.size, |Size(size)| size),
         frames: 0,
         seed: arguments.seed,
-        max_error: arguments.max_error,
+        integrator: method::name(arguments.integrator),
+        jitter: method::jitter(arguments),
+        tube_bounds: method::tube_bounds(arguments),
+        max_error: method::max_error(arguments),
         step: None,
         shadow_step: None,
-        estimate: 0.0,
+        estimate: None,
         samples_per_pixel: 0,
         adaptive: None,
         mean_samples_per_pixel: 0.0,
@@ -125,24 +132,23 @@ impl Pictures<'_> {
     fn render(&mut self, moment: Moment, path: &Path) -> Result<(), Failure> {
         super::stop_if_cancelled()?;
         let Prepared { session, params, .. } = self.prepared;
-        let Stats { size, max_error, frames, milliseconds: phases, .. } = &mut *self.stats;
-        let cli::Render { samples, adaptive, .. } = self.arguments;
-        let sampling = session.sampling(params, moment, *samples, *adaptive)?;
+        let Stats { size, frames, milliseconds: phases, .. } = &mut *self.stats;
         let frame = session.frame(params, moment, *size)?;
-        // Choose the distance between samples from a few rays.
-        let choice = timed(&mut phases.pilot, || {
-            vol_runtime_cpu::choose_step(&session.program, &frame, *size, *max_error)
+        // Choose the distance between samples from a few rays, unless it is given.
+        let sampling = method::sampling(self.arguments, session, params, moment)?;
+        let plan = timed(&mut phases.pilot, || {
+            method::plan(self.arguments, &session.program, &frame, *size, sampling)
         });
         super::stop_if_cancelled()?;
         // Compute the picture.
-        let job = Job { size: *size, step: choice.step, shadow_step: choice.shadow_step, sampling };
         let before = self.pixels * *frames;
         let progress = |done| self.progress.at(before + done);
-        let rendered =
-            timed(&mut phases.render, || self.renderer.render(&frame, &job, &progress, &CANCELLED))?;
+        let rendered = timed(&mut phases.render, || {
+            self.renderer.render_by(plan.method, &frame, &plan.job, &progress, &CANCELLED)
+        })?;
         super::stop_if_cancelled()?;
         timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
-        self.stats.add(&choice, sampling, rendered.counts);
+        self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);
         Ok(())
     }
 }
@@ -155,11 +161,10 @@ fn write_stats(stats: &Stats, path: &Path) -> Result<(), Failure> {
 }
 
 fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
-    if stats.estimate > stats.max_error {
-        let text = format!(
-            "the estimated error {:.1e} is above the {:.1e} asked for",
-            stats.estimate, stats.max_error
-        );
+    if let (Some(estimate), Some(max_error)) = (stats.estimate, stats.max_error)
+        && estimate > max_error
+    {
+        let text = format!("the estimated error {estimate:.1e} is above the {max_error:.1e} asked for");
         let help = "the steps are as small as they get; look at the picture, or allow more with --max-error";
         super::print_message("warning", &Message { text, help: Some(help.to_owned()) });
     }
@@ -168,11 +173,15 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         1 => String::new(),
         frames => format!("{frames} frames of "),
     };
+    let error = match (stats.estimate, arguments.integrator) {
+        (Some(error), cli::Integrator::MonteCarlo) => format!("standard error {error:.1e}"),
+        (Some(error), _) => format!("estimated error {error:.1e}"),
+        (None, _) => "error not estimated".to_owned(),
+    };
     super::print_line(&format!(
-        "{}: {frames}{width}x{height} in {:.2} s on {}, estimated error {:.1e}",
+        "{}: {frames}{width}x{height} in {:.2} s on {}, {error}",
         arguments.output.display(),
         started.elapsed().as_secs_f64(),
         stats.device,
-        stats.estimate,
     ));
 }

@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
-use vol_compiler::frame::{Counts, Sampling};
-use vol_runtime_cpu::StepChoice;
+use vol_compiler::frame::Counts;
+
+use super::method::Plan;
 
 /// The file's content; of several frames, sums and the worst.
 #[derive(Debug, Serialize)]
@@ -20,15 +21,23 @@ pub(super) struct Stats {
     /// Width and height in pixels.
     pub(super) size: [u32; 2],
     pub(super) frames: u64,
-    /// Recorded only: nothing is random at present.
+    /// Of random paths and jitter; without those recorded only.
     pub(super) seed: u64,
-    pub(super) max_error: f32,
-    /// Distance between samples of media along camera rays; the smallest of all frames.
+    /// `comb`, `fixed-step` or `monte-carlo`.
+    pub(super) integrator: &'static str,
+    /// Whether fixed steps are sampled at random places.
+    pub(super) jitter: Option<bool>,
+    /// How fixed steps find tubes: `cells` or `sphere-march`.
+    pub(super) tube_bounds: Option<&'static str>,
+    /// Error allowed of the comb.
+    pub(super) max_error: Option<f32>,
+    /// Distance between samples of media along camera rays; the smallest of all frames. Random paths have none.
     pub(super) step: Option<f32>,
     /// The same along shadow rays.
     pub(super) shadow_step: Option<f32>,
-    /// Estimated error; the largest of all frames.
-    pub(super) estimate: f32,
+    /// Estimated error, the largest of all frames: of the comb by its pilot, of random paths their relative
+    /// standard error.
+    pub(super) estimate: Option<f32>,
     /// Samples of a pixel asked for, or the most; the largest of all frames.
     pub(super) samples_per_pixel: u32,
     /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.
@@ -42,12 +51,15 @@ pub(super) struct Stats {
 }
 
 impl Stats {
-    /// Adds one picture.
-    pub(super) fn add(&mut self, choice: &StepChoice, sampling: Sampling, counts: Counts) {
-        let smaller = |step: Option<f32>, other: f32| Some(step.map_or(other, |step| step.min(other)));
-        self.step = smaller(self.step, choice.step);
-        self.shadow_step = smaller(self.shadow_step, choice.shadow_step);
-        self.estimate = self.estimate.max(choice.estimate);
+    /// Adds one picture, given what was planned and the estimated error.
+    pub(super) fn add(&mut self, plan: &Plan, estimate: Option<f32>, counts: Counts) {
+        let smaller = |least: Option<f32>, other: f32| Some(least.map_or(other, |least| least.min(other)));
+        let sampling = plan.job.sampling;
+        if plan.has_steps {
+            self.step = smaller(self.step, plan.job.step);
+            self.shadow_step = smaller(self.shadow_step, plan.job.shadow_step);
+        }
+        self.estimate = self.estimate.into_iter().chain(estimate).reduce(f32::max);
         self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);
         self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);

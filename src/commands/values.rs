@@ -74,6 +74,14 @@ pub(crate) fn max_error(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A length above 0.
+pub(crate) fn step(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(step) if step >= f32::MIN_POSITIVE && step.is_finite() => Ok(step),
+        _ => Err("must be a number above 0".to_owned()),
+    }
+}
+
 /// A whole number of samples per pixel.
 pub(crate) fn samples(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
@@ -136,6 +144,10 @@ mod tests {
         assert_eq!(max_error("1e-3"), Ok(1e-3));
         for bad in ["0", "1", "-1", "nan", "x"] {
             assert!(max_error(bad).is_err(), "{bad}");
+        }
+        assert_eq!(step("0.25"), Ok(0.25));
+        for bad in ["0", "-0", "1e-50", "-1", "nan", "inf", "1e40", "x"] {
+            assert!(step(bad).is_err(), "{bad}");
         }
     }
     #[test]

@@ -141,7 +141,7 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// Signed distances of one medium's region; [`FAR`] where neither the point nor one within a step
     /// of it is inside.
-    fn region(&mut self, medium: usize, points: &Points<F::Real>, step: F::Real) -> Vec<F::Real> {
+    pub(super) fn region(&mut self, medium: usize, points: &Points<F::Real>, step: F::Real) -> Vec<F::Real> {
         let medium = &self.scene.media[medium];
         if medium.cells.is_empty() {
             self.stats.region_evaluations += points.len() as u64;

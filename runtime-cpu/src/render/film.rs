@@ -63,7 +63,7 @@ impl<F: Fields> Integrator<'_, F> {
             ends[contact.ray] = contact.t;
         }
         // Look at it through the media.
-        let glows = self.march(rays, &ends);
+        let glows = self.through(rays, &ends);
         let mut pixels = Vec::with_capacity(rays.len());
         for (glow, (color, depth)) in glows.into_iter().zip(behind) {
             pixels.push(Radiance {
@@ -100,6 +100,7 @@ pub(crate) fn expose<F: Fields>(
         let mut integrator = Integrator::new(scene, fields(), batches);
         let pixels: Vec<_> = tile.pixels().collect();
         let means = integrator.sample_pixels(&pixels, &job.sampling, watch.cancelled)?;
+        integrator.stats.variance += means.iter().map(Mean::variance).sum::<f64>();
         let pixels: Vec<_> = means.iter().map(Mean::radiance).collect();
         let before = done.fetch_add(pixels.len() as u64, Ordering::Relaxed);
         (watch.progress)(before + pixels.len() as u64);

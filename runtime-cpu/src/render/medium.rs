@@ -234,7 +234,7 @@ impl<F: Fields> Integrator<'_, F> {
 
 /// `1 - cos` and `1 + cos` of the angle by which light from a lamp turns towards the eye, without
 /// cancellation. `toward` is the direction to the lamp, `direction` that of the camera ray.
-fn angle<R: Real>(toward: Vec3<R>, direction: Vec3<R>) -> [R; 2] {
+pub(super) fn angle<R: Real>(toward: Vec3<R>, direction: Vec3<R>) -> [R; 2] {
     // The light flies along -toward and leaves along -direction: their cosine is toward.direction.
     let half = R::from_f32(0.5);
     let apart = sub(toward, direction);

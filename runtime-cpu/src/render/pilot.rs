@@ -115,7 +115,7 @@ fn between(step: f32, estimate: f32, before: Option<f32>, max_error: f32) -> (f3
 }
 
 /// A fraction of the diagonal of the box around the media, or around all if that is infinite.
-fn first_step(frame: &Frame) -> f32 {
+pub(super) fn first_step(frame: &Frame) -> f32 {
     let mut around = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
     for medium in &frame.media {
         for axis in 0..3 {

@@ -141,6 +141,13 @@ impl<R: Real> Mean<R> {
         self.color_spread <= color && self.transmittance_spread <= transmittance
     }
 
+    /// Squared standard error of the mean colour, summed over the channels, as if the samples were
+    /// independent; 0 of one sample.
+    pub(super) fn variance(&self) -> f64 {
+        let pairs = f64::from(self.count) * (f64::from(self.count) - 1.0);
+        if pairs > 0.0 { self.color_spread.to_f64() / pairs } else { 0.0 }
+    }
+
     pub(super) fn radiance(&self) -> Radiance<R> {
         Radiance { color: self.color, transmittance: self.transmittance, depth: self.depth }
     }

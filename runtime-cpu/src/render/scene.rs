@@ -1,6 +1,7 @@
 //! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
 
 use super::fields::Fields;
+use super::method::Way;
 use crate::real::{Real, Vec3, length, vector};
 use vol_compiler::frame::{Frame, Job};
 use vol_compiler::ir::FunctionId;
@@ -30,6 +31,8 @@ pub(crate) struct Scene<R> {
     pub(crate) step: R,
     /// Distance between nodes along shadow rays.
     pub(crate) shadow_step: R,
+    /// How media are integrated.
+    pub(crate) way: Way,
 }
 
 /// See [`vol_compiler::frame::CameraFrame`].
@@ -123,6 +126,7 @@ impl<R: Real> Scene<R> {
             background: vector(frame.background),
             step: R::from_f32(job.step),
             shadow_step: R::from_f32(job.shadow_step),
+            way: Way::Comb,
         }
     }
 }

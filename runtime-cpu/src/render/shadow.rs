@@ -115,6 +115,9 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// Integral of the extinction along each ray.
     fn optical_depth(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Vec3<F::Real>> {
+        if let Some(depths) = self.reference_depth(rays, ends) {
+            return depths;
+        }
         let mut depths = vec![splat(F::Real::ZERO); rays.len()];
         let combs = self.combs(rays, ends, self.scene.shadow_step);
         let nodes = self.batches.nodes;

@@ -1,0 +1,162 @@
+//! Media as the reference modes read them: what is at a point, and the light that is scattered there.
+//!
+//! The only place where `fixed_step`, `monte_carlo` and `majorant` ask the functions of a medium.
+
+use super::camera::{FAR, Ray};
+use super::fields::{Fields, Points};
+use super::medium::angle;
+use super::scene::{Integrator, Light};
+use super::shade::{Arriving, arriving};
+use super::shadow::ShadowRay;
+use super::surface::shadow_bias;
+use crate::real::{Real, Vec3, add, mul, scale, splat};
+use vol_compiler::frame::{Frame, MediumFrame};
+use vol_compiler::ops::interval::Interval;
+use vol_compiler::program::{Lighting, Program};
+use vol_compiler::reference;
+
+/// What a medium is at a point inside it, per unit length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Matter<R> {
+    pub(super) scattering: Vec3<R>,
+    pub(super) extinction: Vec3<R>,
+    pub(super) emission: Vec3<R>,
+}
+
+/// Bounds on a medium over a box.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MatterBounds {
+    /// Largest extinction of any channel; infinite or no number if nothing is known.
+    pub(super) extinction: f64,
+    /// Whether it may emit light.
+    pub(super) glows: bool,
+}
+
+/// Bounds by interval evaluation; none if the medium's region does not reach into the box.
+pub(super) fn bounds(
+    program: &Program,
+    frame: &Frame,
+    medium: &MediumFrame,
+    cell: &[Interval; 3],
+) -> Option<MatterBounds> {
+    let of = |function| {
+        reference::interval(program.module.function(function), cell, &frame.uniforms, &frame.curves)
+    };
+    if of(medium.region)[0].lo > 0.0 {
+        return None;
+    }
+    let interior = of(medium.interior);
+    // Extinction of shadows and of camera rays is one formula, but each is bounded as it is asked.
+    let extinctions = of(medium.extinction).into_iter().chain(interior[3..6].iter().copied());
+    let larger = |most: f64, bound: Interval| if bound.hi.is_nan() { f64::NAN } else { most.max(bound.hi) };
+    let glows = interior[6..9].iter().any(|emission| !(emission.hi <= 0.0));
+    Some(MatterBounds { extinction: extinctions.fold(0.0, larger), glows })
+}
+
+/// A point on a camera ray at which light is scattered.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place<R> {
+    pub(super) point: Vec3<R>,
+    /// Direction of the camera ray.
+    pub(super) direction: Vec3<R>,
+    /// Distance from the eye.
+    pub(super) t: R,
+}
+
+/// A medium's part in the scattering at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part<R> {
+    /// Index of the place.
+    pub(super) place: usize,
+    pub(super) medium: usize,
+    /// Scattering, in whatever the light is to be multiplied by.
+    pub(super) scattering: Vec3<R>,
+}
+
+impl<F: Fields> Integrator<'_, F> {
+    /// Indices of the points inside a medium.
+    pub(super) fn inside_of(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<usize> {
+        let found = self.region(medium, points, F::Real::ZERO).into_iter();
+        found.enumerate().filter(|(_, region)| *region < F::Real::ZERO).map(|(index, _)| index).collect()
+    }
+
+    /// What a medium is at points inside it.
+    pub(super) fn matter(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<Matter<F::Real>> {
+        let values: [Vec<F::Real>; 9] = self.fields.sample(self.scene.media[medium].interior, points);
+        self.stats.medium_samples += points.len() as u64;
+        let color = |first: usize, i: usize| [values[first][i], values[first + 1][i], values[first + 2][i]];
+        let matter = |i| Matter { scattering: color(0, i), extinction: color(3, i), emission: color(6, i) };
+        (0..points.len()).map(matter).collect()
+    }
+
+    /// Extinction of a medium at points inside it, for rays towards lights.
+    pub(super) fn extinction(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<Vec3<F::Real>> {
+        let [r, g, b] = self.fields.sample(self.scene.media[medium].extinction, points);
+        self.stats.shadow_samples += points.len() as u64;
+        (0..points.len()).map(|i| [r[i], g[i], b[i]]).collect()
+    }
+
+    /// Light of all lamps that is scattered towards the eye at each place.
+    pub(super) fn scattered(
+        &mut self,
+        places: &[Place<F::Real>],
+        parts: &[Part<F::Real>],
+    ) -> Vec<Vec3<F::Real>> {
+        let mut sum = vec![splat(F::Real::ZERO); places.len()];
+        let scene = self.scene;
+        let lit = |part: &&Part<F::Real>| {
+            scene.media[part.medium].lighting != Lighting::None
+                && part.scattering.iter().any(|&k| k != F::Real::ZERO)
+        };
+        let parts: Vec<_> = parts.iter().filter(lit).copied().collect();
+        if parts.is_empty() {
+            return sum;
+        }
+        for light in &scene.lights {
+            let lamps: Vec<_> = places.iter().map(|place| arriving(light, place.point)).collect();
+            let seen = self.lamp_visibility(light, places, &lamps, &parts);
+            for (index, medium) in scene.media.iter().enumerate() {
+                let own: Vec<_> = parts.iter().filter(|part| part.medium == index).collect();
+                let turn =
+                    |part: &&Part<F::Real>| angle(lamps[part.place].direction, places[part.place].direction);
+                let [less, more]: [Vec<_>; 2] =
+                    [0, 1].map(|i| own.iter().map(|part| turn(part)[i]).collect());
+                let [phase] = self.fields.apply(medium.phase, &[&less, &more]);
+                for (part, phase) in own.into_iter().zip(phase) {
+                    let free = medium.lighting == Lighting::Unshadowed;
+                    let seen = if free { splat(F::Real::ONE) } else { seen[part.place] };
+                    let arriving = mul(lamps[part.place].irradiance, seen);
+                    sum[part.place] = add(sum[part.place], mul(scale(part.scattering, phase), arriving));
+                }
+            }
+        }
+        sum
+    }
+
+    /// Fraction of a lamp's light that arrives at each place where a medium needs to know.
+    fn lamp_visibility(
+        &mut self,
+        light: &Light<F::Real>,
+        places: &[Place<F::Real>],
+        lamps: &[Arriving<F::Real>],
+        parts: &[Part<F::Real>],
+    ) -> Vec<Vec3<F::Real>> {
+        let mut seen = vec![splat(F::Real::ONE); places.len()];
+        if !light.shadows {
+            return seen;
+        }
+        let shadowed = |part: &&Part<F::Real>| self.scene.media[part.medium].lighting == Lighting::Shadowed;
+        let mut asked: Vec<usize> = parts.iter().filter(shadowed).map(|part| part.place).collect();
+        asked.sort_unstable();
+        asked.dedup();
+        let shadow_ray = |&index: &usize| {
+            let (place, lamp) = (&places[index], &lamps[index]);
+            let ray = Ray { origin: place.point, direction: lamp.direction };
+            ShadowRay::new(ray, lamp.distance.min(F::Real::from_f32(FAR)), shadow_bias(self.scene, place.t))
+        };
+        let rays: Vec<_> = asked.iter().map(shadow_ray).collect();
+        let found = self.visibility(&rays);
+        asked.into_iter().zip(found).for_each(|(index, found)| seen[index] = found);
+        seen
+    }
+}

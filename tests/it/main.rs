@@ -25,6 +25,7 @@ mod pages;
 mod physics;
 mod primitives;
 mod properties;
+mod reference_modes;
 mod sampling;
 mod shapes;
 mod solid;
@@ -57,6 +58,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(physics::trials());
     trials.extend(primitives::trials());
     trials.extend(properties::trials());
+    trials.extend(reference_modes::trials());
     trials.extend(sampling::trials());
     trials.extend(shapes::trials());
     trials.extend(surfaces::trials());

@@ -64,10 +64,15 @@ struct Sample<R> {
 }
 
 impl<R: Real> March<R> {
+    /// Length of the next step: the last one ends with the box or the ray.
+    fn length(&self) -> R {
+        self.stride.min(self.exit - self.t)
+    }
+
     /// The place of the sample in the step.
     fn place(&mut self) -> R {
         let share = self.jitter.as_mut().map_or(R::from_f32(0.5), Stream::uniform);
-        self.t + share * self.stride
+        self.t + share * self.length()
     }
 
     /// Whether there are further steps: half of one is kept from what rounding adds.
@@ -188,7 +193,7 @@ impl<F: Fields> Integrator<'_, F> {
                     for (inside, near) in round.inside.iter_mut().zip(&near) {
                         inside.extend(near[index].inside.then_some(round.samples.len()));
                     }
-                    round.samples.push(Sample { ray: march.ray, t, length: march.stride });
+                    round.samples.push(Sample { ray: march.ray, t, length: march.length() });
                     march.t = march.t + march.stride;
                 }
             }

@@ -29,8 +29,9 @@ const ROUNDING: f64 = 1e-6;
 /// Bounds grow by this share for what f32 adds to the meaning in f64.
 const HEADROOM: f64 = 1.0 + 1e-4;
 
-/// Tentative collisions per width of a cell where something glows, at least: emission is gathered there.
-const LEAST_COLLISIONS: f64 = 1.0;
+/// Tentative collisions over the longest side of the box where something glows, at least: emission is gathered
+/// there.
+const LEAST_COLLISIONS: f64 = 4.0;
 
 /// The grid.
 #[derive(Debug)]
@@ -97,13 +98,25 @@ impl Majorants {
                 return Err(NoMajorant { medium: medium.index });
             }
         }
-        let least = LEAST_COLLISIONS / width.into_iter().fold(0.0, f64::max);
+        let least = LEAST_COLLISIONS / (0..3).map(|i| self.hi[i] - self.lo[i]).fold(0.0, f64::max);
         Ok(if glows { rate.max(least) } else { rate })
     }
 
     /// Size of a cell.
     fn width(&self) -> [f64; 3] {
         [0, 1, 2].map(|i| (self.hi[i] - self.lo[i]) / self.count[i] as f64)
+    }
+
+    /// The rate at a place, 0 outside the grid.
+    #[cfg(test)]
+    pub(super) fn rate_at(&self, place: [f64; 3]) -> f64 {
+        let width = self.width();
+        let index = [0, 1, 2].map(|i| ((place[i] - self.lo[i]) / width[i]).floor());
+        if (0..3).any(|i| index[i] < 0.0 || index[i] >= self.count[i] as f64) {
+            return 0.0;
+        }
+        let [x, y, z] = index.map(|i| i as usize);
+        self.rates[x + self.count[0] * (y + self.count[1] * z)]
     }
 
     /// Starts a free path along a ray, up to its end.

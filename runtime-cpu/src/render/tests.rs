@@ -1,6 +1,7 @@
 //! Pictures with known answers, and what must not change a picture.
 
 mod media;
+mod reference;
 mod same;
 mod sampling;
 mod solids;

@@ -15,6 +15,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("mistakes::points", points),
         trial("mistakes::frame_rate", frame_rate),
         trial("mistakes::sampling", sampling),
+        trial("mistakes::no_majorant", no_majorant),
         #[cfg(target_os = "linux")]
         trial("mistakes::full_disk", full_disk),
     ]
@@ -44,6 +45,30 @@ fn usage(sandbox: &Sandbox) -> Result<(), Failed> {
         ("render ball.vol -o a.png --adaptive 1", "from 0 to below 1"),
         ("render ball.vol -o a.png --adaptive -0.1", "from 0 to below 1"),
         ("render ball.vol -o a.png --adaptive nan", "from 0 to below 1"),
+        ("render ball.vol -o a.png --integrator ode", "possible values: comb, fixed-step, monte-carlo"),
+        ("render ball.vol -o a.png --integrator fixed-step --step 0", "must be a number above 0"),
+        ("render ball.vol -o a.png --integrator fixed-step --step -0.1", "must be a number above 0"),
+        ("render ball.vol -o a.png --integrator fixed-step --step nan", "must be a number above 0"),
+        ("render ball.vol -o a.png --integrator fixed-step --light-step inf", "must be a number above 0"),
+        ("render ball.vol -o a.png --integrator fixed-step --tube-bounds x", "cells, sphere-march"),
+        ("render ball.vol -o a.png --step 0.1", "`--step` means nothing with `--integrator comb`"),
+        ("render ball.vol -o a.png --light-step 0.1", "use `--integrator fixed-step`"),
+        ("render ball.vol -o a.png --jitter", "`--jitter` means nothing with `--integrator comb`"),
+        ("render ball.vol -o a.png --tube-bounds cells", "use `--integrator fixed-step`"),
+        (
+            "render ball.vol -o a.png --integrator monte-carlo --step 1",
+            "means nothing with `--integrator monte-carlo`",
+        ),
+        ("render ball.vol -o a.png --integrator monte-carlo --adaptive 0.1", "`--adaptive` means nothing"),
+        ("render ball.vol -o a.png --integrator fixed-step --max-error 0.1", "use `--integrator comb`"),
+        (
+            "render ball.vol -o a.png --integrator monte-carlo --backend gpu",
+            "`monte-carlo` runs on the CPU only",
+        ),
+        (
+            "render ball.vol -o a.png --integrator fixed-step --backend gpu",
+            "`fixed-step` runs on the CPU only",
+        ),
         ("render ball.vol -o a.png --frames 3", "0..59"),
         ("render ball.vol -o a.png --frames 3..1", "before the first"),
         ("render ball.vol -o a.#.png --frames 1..3 --time 2s", "cannot be used with"),
@@ -185,6 +210,16 @@ fn sampling(sandbox: &Sandbox) -> Result<(), Failed> {
     }
     equal(sandbox.new_files()?, vec!["many.vol".to_owned()])?;
     sandbox.vol("render many.vol -o a.png --backend cpu -D n=20 -D e=0.5")?.expect(0, &[]).map(drop)
+}
+
+/// Random paths need to know how dense a medium can be.
+fn no_majorant(sandbox: &Sandbox) -> Result<(), Failed> {
+    let scene = "medium spike { region: sphere(1), density: q => 1 / (q.local.x * q.local.x) }\nrender { size: (8, 8) }\n";
+    sandbox.write("spike.vol", scene)?;
+    let run = "render spike.vol -o a.png --integrator monte-carlo";
+    sandbox.vol(run)?.expect(1, &["no bound is known", "`spike`", "min(100"])?;
+    equal(sandbox.new_files()?, vec!["spike.vol".to_owned()])?;
+    sandbox.vol("render spike.vol -o a.png --integrator fixed-step")?.expect(0, &[]).map(drop)
 }
 
 #[cfg(target_os = "linux")]

@@ -13,6 +13,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("render::params_and_time_change_the_picture", params_and_time),
         trial("render::stats", stats),
         trial("render::samples", samples),
+        trial("render::integrators", integrators),
         trial("render::summary_names_the_device", summary),
         trial("render::auto_without_a_device_is_cpu", auto_without_device),
         trial("render::replaces_the_old_picture", replaces),
@@ -136,6 +137,36 @@ fn stats(sandbox: &Sandbox) -> Result<(), Failed> {
         equal((phase, time.is_some_and(|time| time >= 0.0)), (phase, true))?;
     }
     equal(stats["device"].as_str().is_some_and(|device| device.contains("thread")), true)
+}
+
+fn integrators(sandbox: &Sandbox) -> Result<(), Failed> {
+    let render = |options: &str| -> Result<(Vec<u8>, serde_json::Value), Failed> {
+        let run = format!("render fog.vol -o a.exr --stats s.json --size 16x9 {options}");
+        sandbox.vol(&run)?.expect(0, &[])?;
+        Ok((sandbox.read("a.exr")?, serde_json::from_slice(&sandbox.read("s.json")?)?))
+    };
+    // The default is the comb; the references choose the CPU by themselves.
+    let (usual, stats) = render("--backend cpu")?;
+    equal(usual == render("--backend cpu --integrator comb")?.0, true)?;
+    equal((stats["integrator"].as_str(), stats["jitter"].is_null()), (Some("comb"), true))?;
+    let (even, stats) = render("--integrator fixed-step --step 0.05 --light-step 0.1")?;
+    equal((stats["integrator"].as_str(), stats["backend"].as_str()), (Some("fixed-step"), Some("cpu")))?;
+    equal((stats["step"].to_string(), stats["shadow_step"].to_string()), ("0.05".into(), "0.1".into()))?;
+    equal((stats["jitter"].as_bool(), stats["tube_bounds"].as_str()), (Some(false), Some("cells")))?;
+    equal((stats["estimate"].is_null(), stats["max_error"].is_null()), (true, true))?;
+    let jittered = "--integrator fixed-step --step 0.05 --light-step 0.1 --jitter";
+    let seeds = [render(jittered)?.0, render(&format!("{jittered} --seed 0 --threads 3"))?.0];
+    equal((seeds[0] == seeds[1], seeds[0] == even), (true, false))?;
+    equal(seeds[0] == render(&format!("{jittered} --seed 1"))?.0, false)?;
+    let (paths, stats) = render("--integrator monte-carlo")?;
+    equal((stats["samples_per_pixel"].as_u64(), stats["step"].is_null()), (Some(64), true))?;
+    let error = stats["estimate"].as_f64().unwrap_or_default();
+    equal((error > 0.0 && error < 0.2, paths == usual), (true, false))?;
+    equal(paths == render("--integrator monte-carlo --seed 0 --threads 1")?.0, true)?;
+    equal(paths == render("--integrator monte-carlo --seed 1")?.0, false)?;
+    // A quarter of the paths, twice the error.
+    let few = render("--integrator monte-carlo --samples 16")?.1["estimate"].as_f64().unwrap_or_default();
+    equal((1.5..2.5).contains(&(few / error)), true)
 }
 
 fn samples(sandbox: &Sandbox) -> Result<(), Failed> {

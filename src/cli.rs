@@ -94,6 +94,14 @@ pub(crate) struct Render {
     /// brightness; the distance between samples of the comb is chosen to meet it [default: 0.01]
     #[arg(long, value_name = "E", value_parser = values::max_error)]
     pub(crate) max_error: Option<f32>,
+    /// Multiply the distance between samples that was chosen, 0.01 to 100: for comparisons of time with
+    /// error; the estimated error is that before [default: 1]
+    #[arg(long, value_name = "F", value_parser = values::step_scale, allow_negative_numbers = true)]
+    pub(crate) step_scale: Option<f32>,
+    /// Compare with this picture, an `.exr` of `vol render` of the same size: root mean square difference
+    /// of the colours relative to its brightness, in the summary and in --stats
+    #[arg(long, value_name = "FILE.exr", conflicts_with = "frames")]
+    pub(crate) reference: Option<PathBuf>,
     /// Rays per pixel, 1 to 4096, instead of the scene's; with an adaptive error the most of them
     /// [default: 1, with an adaptive error 65]; of `--integrator monte-carlo` the paths [default: 64]
     #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]

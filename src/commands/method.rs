@@ -35,6 +35,7 @@ pub(super) fn check(arguments: &cli::Render) -> Result<(), Failure> {
         ("--light-step", fixed.light_step.is_some(), is_fixed, "fixed-step"),
         ("--jitter", fixed.jitter, is_fixed, "fixed-step"),
         ("--tube-bounds", fixed.tube_bounds.is_some(), is_fixed, "fixed-step"),
+        ("--step-scale", arguments.step_scale.is_some(), is_comb, "comb"),
         ("--max-error", arguments.max_error.is_some(), is_comb, "comb"),
         ("--adaptive", arguments.adaptive.is_some(), !is_random, "comb"),
     ] {
@@ -106,10 +107,11 @@ pub(super) fn plan(
     match arguments.integrator {
         Integrator::Comb => {
             let max_error = arguments.max_error.unwrap_or(MAX_ERROR);
+            let scale = arguments.step_scale.unwrap_or(1.0);
             let choice = vol_runtime_cpu::choose_step(program, frame, size, max_error);
             Plan {
                 method: Method::Comb,
-                job: job(choice.step, choice.shadow_step),
+                job: job(scale * choice.step, scale * choice.shadow_step),
                 has_steps: true,
                 estimate: Some(choice.estimate),
             }

@@ -34,7 +34,9 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
         cli::Backend::Auto => Choice::Auto,
     })?;
     let mut stats = new_stats(arguments, &prepared, &device);
-    render(arguments, &prepared, &device, &mut stats)?;
+    let reference =
+        arguments.reference.as_deref().map(|path| read_reference(path, stats.size)).transpose()?;
+    render(arguments, &prepared, &device, reference.as_ref(), &mut stats)?;
     if let Some(path) = &arguments.stats {
         write_stats(&stats, path)?;
     }
@@ -58,6 +60,17 @@ fn check_outputs(arguments: &cli::Render) -> Result<(), Failure> {
     arguments.stats.as_deref().map_or(Ok(()), atomic::probe)
 }
 
+/// The picture to compare with.
+fn read_reference(path: &Path, size: [u32; 2]) -> Result<output::exr::Colors, Failure> {
+    let reference = output::exr::read(path)?;
+    let ([width, height], [wide, high]) = (size, reference.size);
+    if size == reference.size {
+        return Ok(reference);
+    }
+    let text = format!("`{}` is {wide}x{high}, the picture {width}x{height}", path.display());
+    Err(Failure::usage(text).with_help("a picture can be compared with one of its own size only; see --size"))
+}
+
 /// Limits all parallel work of this process.
 fn limit_threads(threads: usize) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -78,9 +91,11 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         jitter: method::jitter(arguments),
         tube_bounds: method::tube_bounds(arguments),
         max_error: method::max_error(arguments),
+        step_scale: arguments.step_scale,
         step: None,
         shadow_step: None,
         estimate: None,
+        error: None,
         samples_per_pixel: 0,
         adaptive: None,
         mean_samples_per_pixel: 0.0,
@@ -98,14 +113,15 @@ fn render(
     arguments: &cli::Render,
     prepared: &Prepared,
     device: &Device,
+    reference: Option<&output::exr::Colors>,
     stats: &mut Stats,
 ) -> Result<(), Failure> {
     let Prepared { session, params, moment } = prepared;
     let frames = arguments.frames.map_or(1, |f| u64::from(f.last - f.first) + 1);
     let pixels = stats.size.map(u64::from).iter().product();
     let renderer = timed(&mut stats.milliseconds.prepare, || device.prepare(&session.program))?;
-    let mut pictures =
-        Pictures { arguments, prepared, renderer, pixels, progress: Progress::new(pixels * frames), stats };
+    let progress = Progress::new(pixels * frames);
+    let mut pictures = Pictures { arguments, prepared, renderer, pixels, progress, reference, stats };
     let Some(FrameRange { first, last }) = arguments.frames else {
         return pictures.render(*moment, &arguments.output);
     };
@@ -124,6 +140,8 @@ struct Pictures<'a> {
     /// Of one picture.
     pixels: u64,
     progress: Progress,
+    /// What the picture is compared with.
+    reference: Option<&'a output::exr::Colors>,
     stats: &'a mut Stats,
 }
 
@@ -148,6 +166,7 @@ impl Pictures<'_> {
         })?;
         super::stop_if_cancelled()?;
         timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
+        self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
         self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);
         Ok(())
     }
@@ -173,13 +192,16 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         1 => String::new(),
         frames => format!("{frames} frames of "),
     };
-    let error = match (stats.estimate, arguments.integrator) {
+    let scaled = if stats.step_scale.is_some() { " before the step was scaled" } else { "" };
+    let estimate = match (stats.estimate, arguments.integrator) {
         (Some(error), cli::Integrator::MonteCarlo) => format!("standard error {error:.1e}"),
-        (Some(error), _) => format!("estimated error {error:.1e}"),
+        (Some(error), _) => format!("estimated error {error:.1e}{scaled}"),
         (None, _) => "error not estimated".to_owned(),
     };
+    let error =
+        stats.error.map_or_else(String::new, |error| format!(", error against the reference {error:.1e}"));
     super::print_line(&format!(
-        "{}: {frames}{width}x{height} in {:.2} s on {}, {error}",
+        "{}: {frames}{width}x{height} in {:.2} s on {}, {estimate}{error}",
         arguments.output.display(),
         started.elapsed().as_secs_f64(),
         stats.device,

@@ -31,13 +31,17 @@ pub(super) struct Stats {
     pub(super) tube_bounds: Option<&'static str>,
     /// Error allowed of the comb.
     pub(super) max_error: Option<f32>,
+    /// What the chosen steps of the comb were multiplied by.
+    pub(super) step_scale: Option<f32>,
     /// Distance between samples of media along camera rays; the smallest of all frames. Random paths have none.
     pub(super) step: Option<f32>,
     /// The same along shadow rays.
     pub(super) shadow_step: Option<f32>,
-    /// Estimated error, the largest of all frames: of the comb by its pilot, of random paths their relative
+    /// Estimated error, the largest of all frames: of the comb by its pilot, before its steps were scaled, of random paths their relative
     /// standard error.
     pub(super) estimate: Option<f32>,
+    /// Relative root mean square difference to the picture of --reference.
+    pub(super) error: Option<f64>,
     /// Samples of a pixel asked for, or the most; the largest of all frames.
     pub(super) samples_per_pixel: u32,
     /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.

@@ -82,6 +82,14 @@ pub(crate) fn step(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A factor from 0.01 to 100.
+pub(crate) fn step_scale(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(factor) if (0.01..=100.0).contains(&factor) => Ok(factor),
+        _ => Err("must be a number from 0.01 to 100".to_owned()),
+    }
+}
+
 /// A whole number of samples per pixel.
 pub(crate) fn samples(text: &str) -> Result<u32, String> {
     match text.parse::<u32>() {
@@ -150,6 +158,15 @@ mod tests {
             assert!(step(bad).is_err(), "{bad}");
         }
     }
+
+    #[test]
+    fn step_scales_are_moderate() {
+        assert_eq!((step_scale("0.01"), step_scale("100")), (Ok(0.01), Ok(100.0)));
+        for bad in ["", "0", "-1", "0.009", "101", "nan", "inf", "x"] {
+            assert!(step_scale(bad).is_err(), "{bad}");
+        }
+    }
+
     #[test]
     fn samples_are_whole() {
         assert_eq!((samples("1"), samples("4096")), (Ok(1), Ok(4096)));

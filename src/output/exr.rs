@@ -11,14 +11,16 @@
 //! background from `RGB` and add `Transmittance` times the other.
 
 use std::io;
+use std::path::Path;
 
 use exr::prelude::{
-    Encoding, Error, Image as ExrImage, ImageAttributes, Layer, LayerAttributes, SpecificChannels, Vec2,
-    WritableImage as _,
+    Encoding, Error, Image as ExrImage, ImageAttributes, Layer, LayerAttributes, ReadChannels as _,
+    ReadLayers as _, ReadSpecificChannel as _, SpecificChannels, Vec2, WritableImage as _, read as reader,
 };
 use vol_compiler::frame::{Image, Pixel};
 
 use super::atomic::Sink;
+use crate::failure::Failure;
 
 /// Writes `picture` as an OpenEXR file of one part.
 ///
@@ -46,6 +48,56 @@ pub fn write(picture: &Image, out: &mut dyn Sink) -> io::Result<()> {
     })
 }
 
+/// The colours of a picture in a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Colors {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Row by row from the top, linear.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl Colors {
+    /// Root mean square difference of a picture of the same size, over the root mean square of this one; 0 for equal
+    /// pictures, infinite if this one is black and the other is not.
+    #[must_use]
+    pub fn error_of(&self, picture: &Image) -> f64 {
+        let (mut apart, mut whole) = (0.0_f64, 0.0_f64);
+        for (expected, found) in self.pixels.iter().zip(&picture.pixels) {
+            for (&expected, &found) in expected.iter().zip(&found.color) {
+                apart += (f64::from(found) - f64::from(expected)).powi(2);
+                whole += f64::from(expected).powi(2);
+            }
+        }
+        if apart == 0.0 { 0.0 } else { (apart / whole).sqrt() }
+    }
+}
+
+/// Reads the colours of an OpenEXR file, such as [`write`] makes.
+///
+/// # Errors
+/// A usage failure if the file cannot be read or has no `R`, `G` and `B`.
+pub fn read(path: &Path) -> Result<Colors, Failure> {
+    let colors = reader()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required::<f32>("R")
+        .required::<f32>("G")
+        .required::<f32>("B")
+        .collect_pixels(
+            |Vec2(width, height), _| (width, vec![[0.0_f32; 3]; width * height]),
+            |(width, pixels), Vec2(x, y), (r, g, b): (f32, f32, f32)| pixels[y * *width + x] = [r, g, b],
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_file(path)
+        .map_err(|error| Failure::io("cannot read", path, error))?;
+    let (size, (_, pixels)) = (colors.layer_data.size, colors.layer_data.channel_data.pixels);
+    Ok(Colors { size: [size.0 as u32, size.1 as u32], pixels })
+}
+
 type Values = (f32, f32, f32, f32, f32, f32, f32, f32);
 
 fn values(pixel: &Pixel) -> Values {
@@ -59,6 +111,19 @@ mod tests {
     use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
     use std::io::Cursor;
     use vol_compiler::frame::{Image, Pixel};
+
+    #[test]
+    fn errors_are_relative() {
+        let pixel = |color| Pixel { color, transmittance: [0.0; 3], depth: 1.0 };
+        let colors = super::Colors { size: [1, 2], pixels: vec![[3.0, 0.0, 0.0], [0.0, 4.0, 0.0]] };
+        let picture = |pixels: Vec<_>| Image { width: 1, height: 2, pixels };
+        let same = picture(colors.pixels.iter().copied().map(pixel).collect());
+        assert_eq!(colors.error_of(&same), 0.0);
+        let off = picture(vec![pixel([3.0, 0.0, 0.3]), pixel([0.0, 4.4, 0.0])]);
+        assert!((colors.error_of(&off) - 0.1).abs() < 1e-6);
+        let black = super::Colors { size: [1, 2], pixels: vec![[0.0; 3]; 2] };
+        assert_eq!(black.error_of(&off), f64::INFINITY);
+    }
 
     #[test]
     fn channels_come_back() {

@@ -18,6 +18,7 @@ mod gpu_device;
 mod library;
 mod lights;
 mod mandelbulb;
+mod media;
 mod nearest;
 mod noises;
 mod operators;
@@ -52,6 +53,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(library::trials());
     trials.extend(lights::trials());
     trials.extend(mandelbulb::trials());
+    trials.extend(media::trials());
     trials.extend(noises::trials());
     trials.extend(operators::trials());
     trials.extend(pages::trials());

@@ -1,4 +1,4 @@
-//! `docs/shapes.md` and `docs/figures.md`: every scene on them is right on both backends, and none is missing.
+//! `docs/shapes.md`, `docs/figures.md`, `docs/tubes.md` and `docs/volumes.md`: every scene on them is right on both backends, and none is missing.
 
 use crate::support::{compile, ensure, frame};
 use crate::{differential, docs, examples, spec};
@@ -10,7 +10,7 @@ use vol_compiler::library::library;
 use vol_compiler::program::Program;
 
 /// The pages, each with a folder of pictures.
-const PAGES: [&str; 2] = ["shapes", "figures"];
+const PAGES: [&str; 4] = ["shapes", "figures", "tubes", "volumes"];
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {

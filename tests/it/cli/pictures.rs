@@ -12,6 +12,7 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("render::frame_is_the_moment", frame_is_the_moment),
         trial("render::params_and_time_change_the_picture", params_and_time),
         trial("render::stats", stats),
+        trial("render::step_scale_and_reference", step_scale_and_reference),
         trial("render::samples", samples),
         trial("render::integrators", integrators),
         trial("render::summary_names_the_device", summary),
@@ -116,6 +117,32 @@ fn params_and_time(sandbox: &Sandbox) -> Result<(), Failed> {
     let [a, b, c, d] = ["a.exr", "b.exr", "c.exr", "d.exr"].map(|name| sandbox.read(name));
     let a = a?;
     equal((a == b?, a == c?, a == d?), (false, true, false))
+}
+
+/// The step is multiplied, and a picture with larger steps is farther from the reference.
+fn step_scale_and_reference(sandbox: &Sandbox) -> Result<(), Failed> {
+    let run = |options: &str| {
+        let run = format!("render fog.vol -o a.exr --backend cpu --stats s.json {options}");
+        let summary = sandbox.vol(&run)?.expect(0, &[])?.stdout;
+        let stats: serde_json::Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
+        let number = |key: &str| stats[key].as_f64();
+        Ok::<_, Failed>((summary, number("step"), number("shadow_step"), number("error")))
+    };
+    sandbox.vol("render fog.vol -o r.exr --backend cpu --max-error 1e-3")?.expect(0, &[])?;
+    let (summary, step, shadow_step, error) = run("")?;
+    equal((error, summary.contains("scaled"), summary.contains("reference")), (None, false, false))?;
+    let (summary, twice, shadow_twice, near) = run("--step-scale 2 --reference r.exr")?;
+    equal((twice, shadow_twice), (step.map(|step| 2.0 * step), shadow_step.map(|step| 2.0 * step)))?;
+    equal(
+        (summary.contains("before the step was scaled"), summary.contains("against the reference")),
+        (true, true),
+    )?;
+    let (_, _, _, far) = run("--step-scale 8 --reference r.exr")?;
+    equal(near > Some(0.0) && near < far, true)?;
+    let (_, _, _, none) = run("--max-error 1e-3 --reference r.exr")?;
+    equal(none, Some(0.0))?;
+    let wrong_size = "render fog.vol -o a.exr --backend cpu --size 8x8 --reference r.exr";
+    sandbox.vol(wrong_size)?.expect(2, &["`r.exr` is 32x18, the picture 8x8", "--size"]).map(drop)
 }
 
 fn stats(sandbox: &Sandbox) -> Result<(), Failed> {

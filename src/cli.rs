@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Query(Query),
     /// Compare the CPU, the GPU and the f64 reference on a scene
     Diff(Diff),
+    /// Look for trouble with the numbers of a scene: NaN, lost digits, jumps, steps too long, slow rays
+    Stress(Stress),
 }
 
 /// Which scene at which moment.
@@ -221,6 +223,27 @@ pub(crate) struct Diff {
     /// Size of the compared pictures [default: the scene's, at most 256 pixels wide and high]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub(crate) size: Option<Size>,
+}
+
+/// Arguments of `vol stress`.
+#[derive(Debug, Args)]
+pub(crate) struct Stress {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// Places at which each function is tried; params are also set to the ends of their ranges, with
+    /// a quarter of the places each
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) points: u32,
+    /// Which places; equal seeds give equal reports
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// What computes in 32 bits beside the CPU; `auto` takes a hardware GPU if there is one
+    #[arg(long, value_enum, default_value_t = Backend::Auto)]
+    pub(crate) backend: Backend,
+    /// `human` writes messages to stderr and a table to stdout, `json` both to stdout, one object a line
+    #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
+    pub(crate) message_format: MessageFormat,
 }
 
 /// What computes a picture.

@@ -14,6 +14,8 @@ mod progress;
 mod query;
 mod render;
 mod stats;
+mod stress;
+mod table;
 pub(crate) mod values;
 
 use std::io::{self, IsTerminal as _, Write as _};
@@ -47,6 +49,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Compile(arguments) => compile::run(arguments),
         Command::Query(arguments) => query::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
+        Command::Stress(arguments) => stress::run(arguments),
     }
 }
 
@@ -144,23 +147,6 @@ fn at_most([width, height]: [u32; 2], longest: u32) -> [u32; 2] {
         return [width, height];
     }
     [width, height].map(|length| (u64::from(length) * u64::from(longest) / u64::from(side)).max(1) as u32)
-}
-
-/// Writes rows to standard output, the first column aligned left and the others right.
-fn print_table(rows: &[Vec<String>]) -> Result<(), Failure> {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut out = io::stdout().lock();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| match i {
-            0 => format!("{cell:<width$}"),
-            _ => format!("{cell:>width$}"),
-        });
-        let line = cells.collect::<Vec<_>>().join("  ");
-        writeln!(out, "{}", line.trim_end()).map_err(|error| Failure::stdout(&error))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

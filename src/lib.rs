@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! path ──session──► Program ──frame──► Frame ──backend──► Image ──output──► PNG, EXR
-//!                                        └──compare──► reports of `vol diff` and of the tests
+//!                                        ├──compare──► reports of `vol diff` and of the tests
+//!                                        └──stress───► what goes wrong at awkward places
 //! ```
 //!
 //! Nothing in here prints or exits: a [`failure::Failure`] goes up to `main`.
@@ -14,3 +15,4 @@ pub mod explain;
 pub mod failure;
 pub mod output;
 pub mod session;
+pub mod stress;

@@ -30,6 +30,7 @@
 //! point function uses them; a point function's operations are f32, each rounded by itself.
 
 pub mod graph;
+pub mod origin;
 pub mod text;
 pub mod verify;
 pub(crate) mod walk;

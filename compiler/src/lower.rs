@@ -25,6 +25,7 @@ pub(crate) mod tube;
 pub(crate) mod value;
 
 use crate::ir::graph::{Graph, Rate, Slots};
+use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
 use std::collections::HashSet;
@@ -85,6 +86,7 @@ pub(crate) struct Lowerer<'a> {
     pub(crate) graph: Graph,
     slots: Slots,
     functions: Vec<Function>,
+    origins: Vec<Origins>,
     curves: Vec<Curve>,
     measures: Vec<(u32, Measure)>,
     tubes: Vec<TubeSizes>,
@@ -119,6 +121,7 @@ impl<'a> Lowerer<'a> {
             graph: Graph::default(),
             slots: Slots::default(),
             functions: Vec::new(),
+            origins: Vec::new(),
             curves: Vec::new(),
             measures: Vec::new(),
             tubes: Vec::new(),
@@ -156,8 +159,9 @@ impl<'a> Lowerer<'a> {
 
     /// Adds a point function; its cost is only what `outputs` need.
     pub(crate) fn function(&mut self, name: &str, inputs: u32, outputs: &[ValueId]) -> FunctionId {
-        let function = self.slots.point_function(&mut self.graph, name, inputs, outputs);
+        let (function, origins) = self.slots.placed_function(&mut self.graph, name, inputs, outputs);
         self.functions.push(function);
+        self.origins.push(origins);
         FunctionId(self.functions.len() as u32 - 1)
     }
 
@@ -236,6 +240,7 @@ impl<'a> Lowerer<'a> {
             render: plan.render,
             fields: plan.fields,
             report: plan.report,
+            origins: std::mem::take(&mut self.origins),
             module,
         }
     }

@@ -4,6 +4,7 @@
 //! that may depend on params and time are [`Slot`]s: indices into the outputs of the frame
 //! function. [`crate::frame::Frame`] is a program at one moment, with those numbers filled in.
 
+use crate::ir::origin::Origins;
 use crate::ir::{FunctionId, Module};
 use vol_language::source::Span;
 use vol_language::ty::Type;
@@ -47,6 +48,8 @@ pub struct Program {
     pub fields: Vec<Field>,
     /// What the compiler left out, one sentence each.
     pub report: Vec<String>,
+    /// Where the instructions of each function come from, by its index.
+    pub origins: Vec<Origins>,
 }
 
 /// A param and where its components enter the frame function.

@@ -6,8 +6,9 @@ use vol::failure::Failure;
 use vol_compiler::frame::{Frame, Job, Sampling};
 use vol_compiler::program::{Field, Program};
 
+use super::table::print_table;
 use super::values::Size;
-use super::{CANCELLED, Prepared, at_most, print_table};
+use super::{CANCELLED, Prepared, at_most};
 use crate::cli;
 
 /// Longest side of the compared pictures where none is asked for, in pixels.

@@ -7,9 +7,11 @@
 
 mod repeat;
 
+use super::origin::Origins;
 use super::{Function, Inst, Number, ValueId};
 use crate::ops::{self, Op, Ty};
 use std::collections::HashMap;
+use vol_language::source::Span;
 
 pub use repeat::Repeated;
 
@@ -31,6 +33,10 @@ pub struct Graph {
     insts: Vec<Inst>,
     rates: Vec<Rate>,
     known: HashMap<Inst, ValueId>,
+    /// What in the scene each value was first made for.
+    places: Vec<Option<Span>>,
+    /// What in the scene new values are made for.
+    place: Option<Span>,
     /// Placeholders made so far.
     placeholders: u32,
 }
@@ -46,6 +52,17 @@ impl Graph {
     #[must_use]
     pub fn rate(&self, value: ValueId) -> Rate {
         self.rates[value.index()]
+    }
+
+    /// What in the scene a value was first made for.
+    #[must_use]
+    pub fn place(&self, value: ValueId) -> Option<Span> {
+        self.places[value.index()]
+    }
+
+    /// Says what in the scene new values are made for; returns what it was before.
+    pub fn set_place(&mut self, place: Option<Span>) -> Option<Span> {
+        std::mem::replace(&mut self.place, place)
     }
 
     /// The number that a value always is.
@@ -82,6 +99,7 @@ impl Graph {
         let value = ValueId(self.insts.len() as u32);
         self.insts.push(inst.clone());
         self.rates.push(rate);
+        self.places.push(self.place);
         self.known.insert(inst, value);
         value
     }
@@ -222,6 +240,17 @@ impl Slots {
         inputs: u32,
         outputs: &[ValueId],
     ) -> Function {
+        self.placed_function(graph, name, inputs, outputs).0
+    }
+
+    /// [`Slots::point_function`], and where in the scene its instructions come from.
+    pub fn placed_function(
+        &mut self,
+        graph: &mut Graph,
+        name: &str,
+        inputs: u32,
+        outputs: &[ValueId],
+    ) -> (Function, Origins) {
         let outputs = as_numbers(graph, outputs);
         let graph = &*graph;
         let leaf = |value: ValueId| {
@@ -229,7 +258,9 @@ impl Slots {
             let tuple = graph.inst(value).parts().is_some();
             (hoisted && !tuple).then(|| Inst::Uniform(self.slot(value)))
         };
-        cut(graph, name, inputs, &outputs, leaf)
+        let (function, values) = cut(graph, name, inputs, &outputs, leaf);
+        let origins = Origins::new(&function, values.into_iter().map(|value| graph.place(value)));
+        (function, origins)
     }
 
     /// Cuts out the frame function, last of all. `inputs` counts time, frame and param components.
@@ -246,7 +277,7 @@ impl Slots {
             | Inst::Extract(..)
             | Inst::Loop { .. } => None,
         };
-        cut(graph, "frame", inputs, &outputs, leaf)
+        cut(graph, "frame", inputs, &outputs, leaf).0
     }
 }
 
@@ -268,14 +299,15 @@ fn as_numbers(graph: &mut Graph, values: &[ValueId]) -> Vec<ValueId> {
     values.iter().map(number).collect()
 }
 
-/// Copies what `outputs` need into a function of its own; `leaf` may replace a node by another.
+/// Copies what `outputs` need into a function of its own; `leaf` may replace a node by another. Also
+/// returns the node behind each instruction.
 fn cut(
     graph: &Graph,
     name: &str,
     inputs: u32,
     outputs: &[ValueId],
     mut leaf: impl FnMut(ValueId) -> Option<Inst>,
-) -> Function {
+) -> (Function, Vec<ValueId>) {
     // Mark what is needed, from the outputs down: operands have smaller ids.
     let mut replaced: HashMap<ValueId, Option<Inst>> = HashMap::new();
     let mut pending: Vec<ValueId> = outputs.to_vec();
@@ -294,12 +326,12 @@ fn cut(
     order.sort_unstable();
     let mut renamed: HashMap<ValueId, ValueId> = HashMap::new();
     let mut insts = Vec::with_capacity(order.len());
-    for value in order {
+    for &value in &order {
         let inst = replaced[&value].clone();
         let inst = inst.unwrap_or_else(|| graph.inst(value).map_operands(|v| renamed[&v]));
         renamed.insert(value, ValueId(insts.len() as u32));
         insts.push(inst);
     }
     let outputs = outputs.iter().map(|v| renamed[v]).collect();
-    Function { name: name.to_owned(), inputs, insts, outputs }
+    (Function { name: name.to_owned(), inputs, insts, outputs }, order)
 }

@@ -24,7 +24,13 @@ impl Lowerer<'_> {
             return Err(too_deep(span));
         }
         self.depth += 1;
+        // Of the standard library the author sees the call.
+        let place = (span.start < vol_language::standard::START).then_some(span);
+        let outer = place.map(|_| self.graph.set_place(place));
         let value = self.expr_unguarded(id);
+        if let Some(outer) = outer {
+            self.graph.set_place(outer);
+        }
         self.depth -= 1;
         value
     }

@@ -56,6 +56,7 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
     };
     let ambient = keep(lowerer, ambient)?;
     for block in &hir.blocks {
+        lowerer.graph.set_place(Some(block.span));
         match block.kind {
             BlockKind::Light => {
                 let light = light(lowerer, block);
@@ -73,6 +74,7 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
             BlockKind::Camera | BlockKind::Render => {}
         }
     }
+    lowerer.graph.set_place(None);
     if plan.lights.is_empty() {
         plan.lights.push(key_light(lowerer));
     }

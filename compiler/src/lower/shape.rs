@@ -52,6 +52,8 @@ pub(crate) struct Shape {
     levels: u32,
     /// Whether the distance changes no faster than the extent says.
     steady: bool,
+    /// The call or operator that made it.
+    span: Span,
 }
 
 /// The kinds of solids. Lengths are in scene units, negative distance is inside.
@@ -113,11 +115,18 @@ impl Shape {
             return Err(too_large(parts, span));
         }
         let steady = kind.is_steady();
-        Ok(Value::Shape(Rc::new(Self { kind, parts, levels, steady })))
+        Ok(Value::Shape(Rc::new(Self { kind, parts, levels, steady, span })))
     }
 
     /// Signed distance (or the bound that the variant states) at a point.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
+        let outer = lowerer.graph.set_place(Some(self.span));
+        let distance = self.distance_here(lowerer, p);
+        lowerer.graph.set_place(outer);
+        distance
+    }
+
+    fn distance_here(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
         Ok(match &self.kind {
             Kind::Primitive(primitive) => primitive.distance(&mut lowerer.graph, p),
             Kind::Tube(tube) => tube.distance(lowerer, p)?,

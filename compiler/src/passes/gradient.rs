@@ -61,7 +61,10 @@ fn differentiate(
     directions: usize,
 ) {
     let zero = graph.number(0.0);
+    let outer = graph.set_place(None);
     for node in varying(graph, values, known) {
+        // A slope belongs to what it is the slope of.
+        graph.set_place(graph.place(node).or(outer));
         let slopes = match graph.inst(node).clone() {
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Uniform(_) | Inst::Input(_) => continue,
             Inst::Extract(tuple, index) => {
@@ -79,6 +82,7 @@ fn differentiate(
         };
         known.insert(node, slopes);
     }
+    graph.set_place(outer);
 }
 
 /// What `values` need, varies with the position and is not known, operands first.

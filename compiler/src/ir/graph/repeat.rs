@@ -136,7 +136,7 @@ fn body(graph: &Graph, repeated: &Repeated<'_>) -> (Function, Vec<ValueId>) {
             Inst::Input((states.len() + captured.len() - 1) as u32)
         })
     };
-    let mut body = cut(graph, "", 0, &outputs, leaf);
+    let (mut body, _) = cut(graph, "", 0, &outputs, leaf);
     body.inputs = (states.len() + captured.len()) as u32;
     (body, captured)
 }

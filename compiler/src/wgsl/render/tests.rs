@@ -56,6 +56,7 @@ fn program(objects: usize, media: usize) -> Program {
         },
         fields: Vec::new(),
         report: Vec::new(),
+        origins: Vec::new(),
     }
 }
 

@@ -170,6 +170,7 @@ impl World {
             },
             fields: Vec::new(),
             report: Vec::new(),
+            origins: Vec::new(),
         };
         let frame = Frame {
             uniforms: Vec::new(),

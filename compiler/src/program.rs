@@ -143,6 +143,9 @@ pub struct Object {
     pub surface: FunctionId,
     /// Colour by normal instead of by light.
     pub shows_normals: bool,
+    /// Whether the distance is known to change no faster than the extent says; else it is only a bound and
+    /// may jump.
+    pub steady: bool,
     /// Bounds and steepness, computed per frame.
     pub extent: Extent,
     /// Whether it is there this frame: 0 or 1.

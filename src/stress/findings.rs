@@ -116,6 +116,10 @@ impl Findings {
     /// The messages, errors first; counts them in the rows.
     pub(super) fn diagnostics(mut self, rows: &mut [Row]) -> Vec<Diagnostic> {
         self.all.sort_by_key(|finding| finding.kind);
+        // What goes to infinity also jumps.
+        let infinite: Vec<Span> =
+            self.all.iter().filter(|f| f.kind == Kind::NotFinite).map(|finding| finding.span).collect();
+        self.all.retain(|finding| finding.kind != Kind::Jumps || !infinite.contains(&finding.span));
         for finding in &self.all {
             if let Some(row) = rows.iter_mut().find(|row| row.name == finding.target) {
                 row.findings += 1;
@@ -129,8 +133,12 @@ fn diagnostic(finding: Finding) -> Diagnostic {
     let Finding { kind, title, span, label, example, count, .. } = finding;
     let message = format!("{title} {}", kind.says());
     let new = if kind.code().starts_with('E') { Diagnostic::error } else { Diagnostic::warning };
-    let times = if count > 1 { format!(", and at {} more places", count - 1) } else { String::new() };
-    new(kind.code(), message, span, label).with_help(format!("{example}{times}; {}", kind.help()))
+    let times = match count {
+        1 => String::new(),
+        2 => " and at one more place".to_owned(),
+        _ => format!(" and at {} more places", count - 1),
+    };
+    new(kind.code(), message, span, format!("{label}: {example}{times}")).with_help(kind.help())
 }
 
 /// The place of a finding: inputs of the function, and the output that is wrong.
@@ -150,13 +158,13 @@ pub(super) struct Scope<'a> {
 
 impl Scope<'_> {
     /// A value that is not finite.
-    pub(super) fn not_finite(&mut self, at: At<'_>, value: f32) {
+    pub(super) fn not_finite(&mut self, at: At<'_>) {
         let kind = match self.target.role {
             Role::Field => Kind::FieldNotFinite,
             _ => Kind::NotFinite,
         };
         let blame = self.narrow.not_finite(at);
-        self.add(kind, blame, format!("{} at {}", written(f64::from(value)), place(at.inputs)), 1.0);
+        self.add(kind, blame, format!("at {}", place(at.inputs)), 1.0);
     }
 
     /// A value that is off by more than its bound.
@@ -206,9 +214,8 @@ impl Scope<'_> {
         if !self.moment.label.is_empty() {
             let _ = write!(example, " with {}", self.moment.label);
         }
-        let same = |known: &&mut Finding| {
-            known.kind == kind && known.span == span && known.target == self.target.name
-        };
+        // An expression that several functions share is said to be wrong once.
+        let same = |known: &&mut Finding| known.kind == kind && known.span == span;
         if let Some(known) = self.findings.all.iter_mut().find(same) {
             known.count += 1;
             if weight > known.weight {

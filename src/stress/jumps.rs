@@ -36,6 +36,11 @@ impl Pair {
         Self { ends, values: ends.map(|p| evaluator.exact(target.function, &p)) }
     }
 
+    /// Whether the two places are on different sides of a surface.
+    fn crosses(&self) -> bool {
+        (self.values[0][0] < 0.0) != (self.values[1][0] < 0.0)
+    }
+
     /// The largest difference, and in which output it is.
     fn change(&self) -> (usize, f64) {
         let [a, b] = &self.values;
@@ -87,7 +92,8 @@ pub(super) fn check(
             continue;
         }
         let kind = match target.role {
-            Role::Distance { stride } if !is_known(evaluator, stride, pair.ends) => Kind::DistanceJumps,
+            Role::Distance { steady: false, .. } if !pair.crosses() => continue,
+            Role::Distance { stride, .. } if !is_known(evaluator, stride, pair.ends) => Kind::DistanceJumps,
             _ => Kind::Jumps,
         };
         scope.jumps([&pair.ends[0], &pair.ends[1]], output, jump, kind);

@@ -1,5 +1,6 @@
 //! Rays on their way to a surface: steps that are too long, and ways that take too many.
 
+use rayon::prelude::*;
 use vol_compiler::frame::Stride;
 use vol_compiler::ir::verify::random::Random;
 use vol_compiler::program::NO_BOUND;
@@ -42,35 +43,41 @@ pub(super) fn check_steps(
     random: &mut Random,
     scope: &mut Scope<'_>,
 ) {
-    let Role::Distance { stride } = target.role else { return };
+    let Role::Distance { stride, .. } = target.role else { return };
     let gradient = evaluator.program.objects.iter().find(|object| object.distance == target.function);
     let Some(gradient) = gradient.map(|object| object.gradient) else { return };
     let size = target.place.size;
-    for i in 0..count / 2 {
-        let from = target.place.around(random);
-        let value = evaluator.number(target.function, &from);
-        if !value.is_finite() || value == 0.0 {
-            continue;
-        }
-        // Most often straight to the surface.
-        let slope = evaluator.exact(gradient, &from);
-        let straight = [0, 1, 2].map(|k| -value.signum() * slope[k]);
-        let spread = random.between(0.0, 1.0);
-        let way = if i % 4 == 0 { direction(random) } else { along(straight, direction(random), spread) };
-        let long = length(way);
-        if !(long > 1e-9) {
-            continue;
-        }
-        let way = way.map(|x| x / long);
-        let step = safe(evaluator, stride, from, way, value.abs());
-        let crossed = (1..=SAMPLES).find_map(|k| {
-            let at = MOST_OF_A_STEP * step * k as f64 / SAMPLES as f64;
-            let there = evaluator.number(target.function, &along(from, way, at));
-            (there * value.signum() < -CROSSED * size).then_some(at)
-        });
-        if let Some(at) = crossed {
-            scope.oversteps(from, step, at);
-        }
+    // Most often straight to the surface.
+    let tries: Vec<([f64; 3], [f64; 3], f64)> = (0..count / 2)
+        .map(|i| {
+            let away = direction(random);
+            let spread = if i % 4 == 0 { f64::INFINITY } else { random.between(0.0, 1.0) };
+            (target.place.around(random), away, spread)
+        })
+        .collect();
+    let crossed: Vec<_> = tries
+        .par_iter()
+        .filter_map(|&(from, away, spread)| {
+            let value = evaluator.number(target.function, &from);
+            let slope = evaluator.exact(gradient, &from);
+            let straight = [0, 1, 2].map(|k| -value.signum() * slope[k]);
+            let way = if spread.is_finite() { along(straight, away, spread) } else { away };
+            let long = length(way);
+            if !(long > 1e-9 && value.is_finite() && value != 0.0) {
+                return None;
+            }
+            let way = way.map(|x| x / long);
+            let step = safe(evaluator, stride, from, way, value.abs());
+            let crossed = (1..=SAMPLES).find_map(|k| {
+                let at = MOST_OF_A_STEP * step * k as f64 / SAMPLES as f64;
+                let there = evaluator.number(target.function, &along(from, way, at));
+                (there * value.signum() < -CROSSED * size).then_some(at)
+            });
+            crossed.map(|at| (from, step, at))
+        })
+        .collect();
+    for (from, step, at) in crossed {
+        scope.oversteps(from, step, at);
     }
 }
 
@@ -117,7 +124,7 @@ pub(super) fn check_progress(
     random: &mut Random,
     scope: &mut Scope<'_>,
 ) {
-    let Role::Distance { stride } = target.role else { return };
+    let Role::Distance { stride, .. } = target.role else { return };
     let all: Vec<Walker> = (0..RAYS).filter_map(|_| walker(&target.place, random)).collect();
     let started = all.len();
     let mut walkers = all;

@@ -7,8 +7,8 @@ use vol_language::ty::Type;
 
 use crate::session::written;
 
-/// Far in the future, in seconds: about three hours, longer than any animation.
-const LATE: f64 = 1e4;
+/// Far in the future, in seconds: a quarter of an hour, longer than most animations.
+const LATE: f64 = 1e3;
 
 /// Size of the picture for which frames are made: only the aspect ratio of the camera depends on it.
 const SIZE: [u32; 2] = [96, 54];

@@ -115,7 +115,7 @@ impl<'a> Narrow<'a> {
         let change = |value: ValueId| {
             self.outputs[value.index()].map_or(0.0, |output| {
                 let [a, b] = [values[0][output], values[1][output]];
-                let size = a.abs().max(b.abs()).max(1e-6);
+                let size = a.abs().max(b.abs()).max(1e-3);
                 if a == b { 0.0 } else { (a - b).abs() / size }
             })
         };

@@ -1,5 +1,6 @@
 //! f32 against f64 and its running error bound, at awkward places.
 
+use rayon::prelude::*;
 use vol_compiler::error_bound::Bounded;
 use vol_compiler::ir::FunctionId;
 use vol_compiler::ir::verify::random::Random;
@@ -14,9 +15,17 @@ use crate::failure::Failure;
 /// An error bound larger than this part of the function's values means that nothing is left of them.
 const HOPELESS: f64 = 1e-2;
 
-/// Share of places at which a value that is undecided may also be wrong: next to a jump that the author
-/// wrote it is.
+/// A bound is only believed to be hopeless where what was computed is off by this part of the values, too:
+/// bounds of long chains of operations are seldom reached.
+const VISIBLE: f64 = 1e-3;
+
+/// Share of places at which a value that is undecided may also be wrong: beside a jump that the author
+/// wrote, or a slope beside an edge.
 const WRONG_BESIDE_JUMPS: f64 = 0.05;
+
+/// How far below a surface its slope is asked, in sizes: the renderer asks inside, too, since a distance may
+/// have no slope on the surface itself.
+const BELOW: f64 = 1e-4;
 
 /// Compares a function's values in f32 with those in f64 and tells what is off.
 ///
@@ -86,25 +95,29 @@ fn compare(
     beside: &mut Beside,
 ) {
     if !single.is_finite() {
-        scope.not_finite(at, single);
+        scope.not_finite(at);
         return;
     }
     let off = (f64::from(single) - bounded.value).abs();
     let scale = scale.max(bounded.value.abs());
     let judged = is_judged(target, at.inputs) && scale > 0.0;
     beside.all += usize::from(judged);
+    // Slopes jump at edges, whatever their bound says.
+    let may_jump = !bounded.error.is_finite() || matches!(target.role, Role::Gradient { .. });
+    if may_jump && judged && off > HOPELESS * scale {
+        beside.wrong.push((at.inputs.to_vec(), at.output, off, scale));
+    }
     if !bounded.error.is_finite() {
-        if judged && off > HOPELESS * scale {
-            beside.wrong.push((at.inputs.to_vec(), at.output, off, scale));
-        }
         return;
     }
     let share = if off == 0.0 { 0.0 } else { off / bounded.error };
     row.share = row.share.max(share);
-    row.apart = row.apart.max(if scale > 0.0 { off / scale } else { 0.0 });
+    if judged {
+        row.apart = row.apart.max(off / scale);
+    }
     if share > 1.0 {
         scope.out_of_bound(at, off, bounded.error);
-    } else if judged && bounded.error > HOPELESS * scale {
+    } else if judged && !may_jump && bounded.error > HOPELESS * scale && off > VISIBLE * scale {
         scope.lost_digits(at, bounded.error, scale);
     }
 }
@@ -112,7 +125,8 @@ fn compare(
 /// Whether a loss of digits matters there: near the box, where pictures ask.
 fn is_judged(target: &Target, inputs: &[f32]) -> bool {
     match (target.role, inputs) {
-        (Role::Phase | Role::Steepness, _) => false,
+        (Role::Phase, _) => true,
+        (Role::Steepness, _) => false,
         (_, &[x, y, z]) => target.place.is_around([x, y, z]),
         (_, _) => false,
     }
@@ -151,7 +165,7 @@ fn rows(evaluator: &Evaluator<'_>, target: &Target, count: usize, random: &mut R
     }
 }
 
-/// Places on a surface, and next to it.
+/// Places on a surface and next to it; for slopes a little below it.
 fn near_surface(
     evaluator: &Evaluator<'_>,
     target: &Target,
@@ -161,38 +175,44 @@ fn near_surface(
 ) -> Vec<[f32; 3]> {
     let slope = evaluator.program.objects.iter().find(|object| object.distance == distance);
     let Some(slope) = slope.map(|object| object.gradient) else { return Vec::new() };
+    let size = target.place.size;
     let starts = target.place.awkward(2 * count, random).into_iter().filter(|&p| target.place.is_around(p));
-    let landed = starts.filter_map(|p| {
-        let p = land(evaluator, distance, slope, p.map(f64::from), target.place.size)?;
-        // On it, or up to a millionth of the size to either side.
-        let off = [0.0, 1e-6, -1e-6, 1e-7][random.below(4)] * target.place.size;
-        Some(along(p, super::points::direction(random), off).map(|x| x as f32))
+    let starts: Vec<[f32; 3]> = starts.take(count).collect();
+    let below = if matches!(target.role, Role::Gradient { .. }) { BELOW * size } else { 0.0 };
+    let landed: Vec<_> =
+        starts.par_iter().filter_map(|p| land(evaluator, distance, slope, p.map(f64::from), size)).collect();
+    // On it, or up to a millionth of the size to either side.
+    let beside = landed.into_iter().map(|(p, slope)| {
+        let off = [0.0, 1e-6, -1e-6, 1e-7][random.below(4)] * size;
+        let p = along(p, super::points::direction(random), off);
+        along(p, slope, -below / dot(slope, slope).sqrt().max(1e-6)).map(|x| x as f32)
     });
-    landed.take(count).collect()
+    beside.collect()
 }
 
-/// The surface near a place, by steps along the gradient; none if it is not found.
+/// The surface near a place, by steps along the gradient, and the slope there; none if it is not found.
 fn land(
     evaluator: &Evaluator<'_>,
     distance: FunctionId,
     slope: FunctionId,
     mut p: [f64; 3],
     size: f64,
-) -> Option<[f64; 3]> {
+) -> Option<([f64; 3], [f64; 3])> {
+    let mut gradient = [0.0; 3];
     for _ in 0..12 {
         let value = evaluator.number(distance, &p);
         if value.abs() < 1e-9 * size {
-            return Some(p);
+            break;
         }
-        let gradient = evaluator.exact(slope, &p);
-        let gradient = [gradient[0], gradient[1], gradient[2]];
+        let found = evaluator.exact(slope, &p);
+        gradient = [found[0], found[1], found[2]];
         let square = dot(gradient, gradient);
         if !(square > 1e-12 && value.is_finite()) {
             return None;
         }
         p = along(p, gradient, -value / square);
     }
-    (evaluator.number(distance, &p).abs() < 1e-4 * size).then_some(p)
+    (evaluator.number(distance, &p).abs() < 1e-4 * size).then_some((p, gradient))
 }
 
 /// Places inside a region, as the CPU sees it.

@@ -13,7 +13,7 @@ use super::points::Place;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Role {
     /// Distance of an object, and what makes it safe to walk.
-    Distance { stride: Stride },
+    Distance { stride: Stride, steady: bool },
     /// Gradient of a distance.
     Gradient { distance: FunctionId },
     /// Bound on the slope over a box.
@@ -45,7 +45,7 @@ pub(super) struct Target {
 }
 
 /// Instructions computed per function and moment at most, loops counted by all their steps.
-const BUDGET: u64 = 10_000_000;
+const BUDGET: u64 = 4_000_000;
 
 /// Fewest places, however long a function is.
 const FEWEST: u32 = 64;
@@ -53,7 +53,18 @@ const FEWEST: u32 = 64;
 impl Target {
     /// `points`, or fewer for a function that takes long.
     pub(super) fn affordable(&self, program: &Program, points: u32) -> u32 {
-        let cost = cost(program.module.function(self.function));
+        let cost = |id: FunctionId| cost(program.module.function(id));
+        // Places on a surface are found by steps along the gradient.
+        let search = match self.role {
+            Role::Gradient { distance } | Role::Surface { distance } => 4 * cost(distance),
+            Role::Distance { .. }
+            | Role::Steepness
+            | Role::Region
+            | Role::Interior { .. }
+            | Role::Phase
+            | Role::Field => 0,
+        };
+        let cost = cost(self.function).saturating_add(search);
         let most = u32::try_from(BUDGET / cost.max(1)).unwrap_or(u32::MAX);
         points.min(most.max(FEWEST)).max(1)
     }
@@ -77,11 +88,13 @@ pub(super) fn targets(program: &Program, frame: &Frame) -> Vec<Target> {
         let block = &program.objects[object.index];
         let place = place(frame, object.bounds);
         let mut add = |what: &str, title: &str, function, role| {
-            let (name, title) = (format!("{what}:{}", block.name), format!("{title} of `{}`", block.name));
+            let name = format!("{what}:{}", block.name);
+            let title = format!("{title} of the object `{}`", block.name);
             all.push(Target { name, title, function, role, span: block.span, place: place.clone() });
         };
         let distance = object.distance;
-        add("distance", "the distance", distance, Role::Distance { stride: object.stride });
+        let role = Role::Distance { stride: object.stride, steady: block.steady };
+        add("distance", "the distance", distance, role);
         add("gradient", "the slope of the distance", object.gradient, Role::Gradient { distance });
         if let Stride::Within(steepness) = object.stride {
             add("steepness", "the bound on the slope", steepness, Role::Steepness);
@@ -92,7 +105,8 @@ pub(super) fn targets(program: &Program, frame: &Frame) -> Vec<Target> {
         let block = &program.media[medium.index];
         let place = place(frame, medium.bounds);
         let mut add = |what: &str, title: &str, function, role| {
-            let (name, title) = (format!("{what}:{}", block.name), format!("{title} of `{}`", block.name));
+            let name = format!("{what}:{}", block.name);
+            let title = format!("{title} of the medium `{}`", block.name);
             all.push(Target { name, title, function, role, span: block.span, place: place.clone() });
         };
         let region = medium.region;

@@ -4,11 +4,12 @@ use crate::support::{Diagnosed, diagnose, ensure, ensure_page};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::explain::{Story, codes, codes_with_text, story};
+use vol_language::diag::Diagnostic;
 use vol_language::source::{MAX_SOURCE_BYTES, SourceFile};
 
 /// Codes without scenes: in a text the parser is first to notice a range or a kind of block that does
-/// not belong where it stands.
-const WITHOUT_SCENES: [&str; 2] = ["E0221", "E0301"];
+/// not belong where it stands, and of our own mistakes there is no scene.
+const WITHOUT_SCENES: [&str; 5] = ["E0221", "E0301", "E0702", "E0703", "E0704"];
 
 /// Codes whose first scene is many files; the tests of `language/src/module.rs` have them.
 const OF_MANY_FILES: [&str; 1] = ["E0604"];
@@ -74,7 +75,7 @@ fn has_mistake(story: &Story) -> Result<(), Failed> {
         (None, None) => return Err("there is no scene with the mistake".into()),
         (Some(_), Some(_)) => return Err("the scene is shown, but another one is tested".into()),
     };
-    let found = diagnose(SourceFile::new("before.vol", before)).diagnostics;
+    let found = messages(code, &before)?;
     let found: Vec<&str> = found.iter().map(|diagnostic| diagnostic.code).collect();
     ensure(!found.is_empty() && found.iter().all(|found| *found == code || is_flood(code, found)), || {
         format!("the scene before gives {found:?}")
@@ -84,8 +85,18 @@ fn has_mistake(story: &Story) -> Result<(), Failed> {
 
 fn has_none(story: &Story) -> Result<(), Failed> {
     let after = story.after().ok_or("there is no scene after")?;
-    let Diagnosed { program, diagnostics: found, .. } = diagnose(SourceFile::new("after.vol", after));
-    ensure(program.is_some() && found.is_empty(), || format!("the scene after gives {found:#?}"))
+    let compiles = diagnose(SourceFile::new("after.vol", after)).program.is_some();
+    let found = messages(story.code, after)?;
+    ensure(compiles && found.is_empty(), || format!("the scene after gives {found:#?}"))
+}
+
+/// What there is to say about a scene; what `vol stress` says where the code is one of its own.
+fn messages(code: &str, text: &str) -> Result<Vec<Diagnostic>, Failed> {
+    let Diagnosed { program, mut diagnostics, .. } = diagnose(SourceFile::new("scene.vol", text));
+    if let Some(program) = program.filter(|_| vol::stress::CODES.iter().any(|(own, _)| *own == code)) {
+        diagnostics.extend(crate::stress::report(&program)?.diagnostics);
+    }
+    Ok(diagnostics)
 }
 
 /// Whether the code is about too many other messages, of which this is one.

@@ -31,6 +31,7 @@ mod sampling;
 mod shapes;
 mod solid;
 mod spec;
+mod stress;
 mod support;
 mod surfaces;
 mod ui;
@@ -65,6 +66,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(shapes::trials());
     trials.extend(surfaces::trials());
     trials.extend(spec::trials());
+    trials.extend(stress::trials());
     trials.extend(ui::trials());
     #[cfg(feature = "gpu")]
     trials.extend(gpu_device::trials());

@@ -6,7 +6,7 @@ use crate::support::{Random, ensure};
 use libtest_mimic::{Failed, Trial};
 
 /// Solids of finite size, off their symmetries.
-const SOLIDS: &[&str] = &[
+pub(crate) const SOLIDS: &[&str] = &[
     "sphere(0.5)",
     "box((0.5, 0.3, 0.4))",
     "torus(0.4, 0.15)",
@@ -23,7 +23,7 @@ const SOLIDS: &[&str] = &[
 ];
 
 /// What is done to them, and whether every length is kept somewhere, so that the steepest slope is met.
-const TRANSFORMS: &[(&str, bool)] = &[
+pub(crate) const TRANSFORMS: &[(&str, bool)] = &[
     (".translate((1, -2, 0.5))", true),
     (".rotate((1, 2, 3), 77deg)", true),
     (".look_along((1, -2, 0.5))", true),
@@ -48,7 +48,7 @@ const TRANSFORMS: &[(&str, bool)] = &[
 ];
 
 /// Blends of three solids.
-const BLENDS: &[&str] = &[
+pub(crate) const BLENDS: &[&str] = &[
     "union(A, B, C)",
     "intersect(A, B, C)",
     "subtract(A, B)",
@@ -153,7 +153,7 @@ fn stretch_by_formula() -> Result<(), Failed> {
     Ok(())
 }
 
-fn of_parts(text: &str) -> String {
+pub(crate) fn of_parts(text: &str) -> String {
     let [a, b, c] = PARTS;
     text.replace('A', a).replace('B', b).replace('C', c)
 }

@@ -17,7 +17,7 @@ const FEWER: usize = 4000;
 
 /// How a shape's number relates to the distance.
 #[derive(Clone, Copy, PartialEq)]
-enum Claim {
+pub(crate) enum Claim {
     /// Equal.
     Exact,
     /// Equal outside, not above the depth inside.
@@ -29,10 +29,10 @@ enum Claim {
 use Claim::{Bound, Exact, ExactOutside};
 
 /// Text, what it promises, its nearest point.
-type Row = (&'static str, Claim, fn() -> Distance);
+pub(crate) type Row = (&'static str, Claim, fn() -> Distance);
 
 /// `z` is 0, constant or of a param.
-const SOLIDS: &[Row] = &[
+pub(crate) const SOLIDS: &[Row] = &[
     ("sphere(0.8)", Exact, || ring_of_circles(0.0, 0.8)),
     ("box((0.7, 0.3, 0.9))", Exact, || cuboid([0.7, 0.3, 0.9])),
     ("torus(0.8, 0.3)", Exact, || ring_of_circles(0.8, 0.3)),
@@ -72,7 +72,7 @@ const SOLIDS: &[Row] = &[
 ];
 
 /// The same without some of their sizes.
-const DEGENERATE: &[Row] = &[
+pub(crate) const DEGENERATE: &[Row] = &[
     ("sphere(z)", Exact, || thick_segment([0.0; 3], [0.0; 3], 0.0)),
     ("box((0.7, z, 0.9))", Exact, || cuboid([0.7, 0.0, 0.9])),
     ("box((z, z, 0.9))", Exact, || cuboid([0.0, 0.0, 0.9])),

@@ -249,6 +249,7 @@ fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan:
         steepness: shape.steepness(lowerer, name, span)?,
         surface: lowerer.function(&format!("surface:{name}"), 3, &surface),
         shows_normals: matches!(*material, Material::Normals),
+        steady: shape.is_steady(),
         extent: shape.extent(lowerer, span)?,
         enabled: lowerer.scalar_slot(block, "when", 1.0)?,
         span: block.span,

@@ -118,6 +118,11 @@ impl Shape {
         Ok(Value::Shape(Rc::new(Self { kind, parts, levels, steady, span })))
     }
 
+    /// Whether the distance changes no faster than the extent says.
+    pub(crate) fn is_steady(&self) -> bool {
+        self.steady
+    }
+
     /// Signed distance (or the bound that the variant states) at a point.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
         let outer = lowerer.graph.set_place(Some(self.span));

@@ -21,6 +21,7 @@ fn program(objects: usize, media: usize) -> Program {
         steepness: None,
         surface: FunctionId(2),
         shows_normals: false,
+        steady: true,
         extent: Extent::Unbounded,
         enabled: NOWHERE,
         span: Span::default(),

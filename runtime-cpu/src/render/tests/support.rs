@@ -214,6 +214,7 @@ impl World {
             gradient,
             surface,
             shows_normals: false,
+            steady: true,
             bounds,
             stride: Stride::Scale(safe_scale),
         });

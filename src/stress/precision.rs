@@ -27,6 +27,9 @@ const WRONG_BESIDE_JUMPS: f64 = 0.05;
 /// have no slope on the surface itself.
 const BELOW: f64 = 1e-4;
 
+/// The same where the solid is far from the origin, per distance: 16 units in the last place of a position.
+const ROUNDING: f64 = 2e-6;
+
 /// Compares a function's values in f32 with those in f64 and tells what is off.
 ///
 /// # Errors
@@ -178,7 +181,9 @@ fn near_surface(
     let size = target.place.size;
     let starts = target.place.awkward(2 * count, random).into_iter().filter(|&p| target.place.is_around(p));
     let starts: Vec<[f32; 3]> = starts.take(count).collect();
-    let below = if matches!(target.role, Role::Gradient { .. }) { BELOW * size } else { 0.0 };
+    let far = target.place.lo.iter().chain(&target.place.hi).fold(0.0f64, |far, x| far.max(x.abs()));
+    let is_slope = matches!(target.role, Role::Gradient { .. });
+    let below = if is_slope { (BELOW * size).max(ROUNDING * far) } else { 0.0 };
     let landed: Vec<_> =
         starts.par_iter().filter_map(|p| land(evaluator, distance, slope, p.map(f64::from), size)).collect();
     // On it, or up to a millionth of the size to either side.

@@ -66,7 +66,7 @@ fn example_trials(name: &str, path: PathBuf) -> Vec<Trial> {
     trials
 }
 
-fn on_cpu(program: &Program, frame: &Frame, inputs: &[f32]) -> Result<Vec<f32>, Failed> {
+pub(crate) fn on_cpu(program: &Program, frame: &Frame, inputs: &[f32]) -> Result<Vec<f32>, Failed> {
     let function = program.module.function(FIRST);
     let tapes = vol_runtime_cpu::interp::Tapes::new(program);
     let mut evaluator = vol_runtime_cpu::interp::Evaluator::new(&tapes, frame);
@@ -82,12 +82,14 @@ fn on_cpu(program: &Program, frame: &Frame, inputs: &[f32]) -> Result<Vec<f32>, 
 }
 
 #[cfg(feature = "gpu")]
-fn on_gpu(gpu: &vol_runtime_gpu::Gpu) -> impl Fn(&Program, &Frame, &[f32]) -> Result<Vec<f32>, Failed> {
+pub(crate) fn on_gpu(
+    gpu: &vol_runtime_gpu::Gpu,
+) -> impl Fn(&Program, &Frame, &[f32]) -> Result<Vec<f32>, Failed> {
     move |program, frame, inputs| Ok(vol_runtime_gpu::evaluate(gpu, program, frame, FIRST, inputs)?)
 }
 
 /// A function that applies one operation to its inputs; truth values are `input > 1/2`.
-fn function_of(operation: &Operation, data: u32) -> Function {
+pub(crate) fn function_of(operation: &Operation, data: u32) -> Function {
     let mut insts = Vec::new();
     let mut push = |inst: Inst| {
         insts.push(inst);
@@ -119,7 +121,7 @@ fn function_of(operation: &Operation, data: u32) -> Function {
 }
 
 /// Random operands from the operation's domain, every eighth on a whole number or an end.
-fn operands(operation: &Operation) -> Vec<f32> {
+pub(crate) fn operands(operation: &Operation) -> Vec<f32> {
     let mut random = Random::new(operation.op as u64 + 1);
     let mut rows = Vec::new();
     for row in 0..OPERATION_POINTS {

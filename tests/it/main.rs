@@ -21,6 +21,7 @@ mod mandelbulb;
 mod media;
 mod nearest;
 mod noises;
+mod numerics;
 mod operators;
 mod pages;
 mod physics;
@@ -56,6 +57,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(mandelbulb::trials());
     trials.extend(media::trials());
     trials.extend(noises::trials());
+    trials.extend(numerics::trials());
     trials.extend(operators::trials());
     trials.extend(pages::trials());
     trials.extend(physics::trials());

@@ -24,15 +24,20 @@ impl Lowerer<'_> {
             return Err(too_deep(span));
         }
         self.depth += 1;
-        // Of the standard library the author sees the call.
-        let place = (span.start < vol_language::standard::START).then_some(span);
-        let outer = place.map(|_| self.graph.set_place(place));
+        let outer = self.enter(span);
         let value = self.expr_unguarded(id);
-        if let Some(outer) = outer {
-            self.graph.set_place(outer);
-        }
+        self.graph.set_place(outer);
         self.depth -= 1;
         value
+    }
+
+    /// Says that new values are made for an expression; returns what they were made for before. Of the
+    /// standard library the author sees the call.
+    fn enter(&mut self, span: Span) -> Option<Span> {
+        let outer = self.graph.set_place(None);
+        let is_own = span.start < vol_language::standard::START;
+        self.graph.set_place(if is_own { Some(span) } else { outer });
+        outer
     }
 
     fn expr_unguarded(&mut self, id: ExprId) -> Lowered<Value> {
@@ -175,10 +180,15 @@ impl Lowerer<'_> {
             left = *a;
         }
         let span = hir.expr(id).span;
+        let start = hir.expr(left).span;
         let mut value = self.expr(left)?;
         for (op, right) in spine.into_iter().rev() {
+            let end = hir.expr(right).span;
             let right = self.expr(right)?;
+            // An operator stands for its own operands, not for all of the chain.
+            let outer = self.enter(start.to(end));
             value = self.binary(op, &value, &right, span)?;
+            self.graph.set_place(outer);
         }
         Ok(value)
     }

@@ -133,9 +133,12 @@ impl Phase {
             Self::DoubleHenyeyGreenstein(g1, g2, weight) => {
                 let first = henyey_greenstein(graph, *g1, versine, coversine);
                 let second = henyey_greenstein(graph, *g2, versine, coversine);
-                let gap = graph.sub(first, second);
-                let share = graph.mul(*weight, gap);
-                graph.add(second, share)
+                // Not `second + weight (first - second)`: beside a sharp lobe of weight 0 nothing would
+                // be left of the other.
+                let one = graph.number(1.0);
+                let rest = graph.sub(one, *weight);
+                let (first, second) = (graph.mul(*weight, first), graph.mul(rest, second));
+                graph.add(first, second)
             }
         }
     }

@@ -13,6 +13,10 @@
 //!
 //! Pieces are not scaled by a power of two: a test over sizes 1e-6 to 1e6 shows no need.
 
+mod boxes;
+
+pub use boxes::{FEW_PIECES, Node};
+
 /// One quadratic Bezier segment, scene units: start `a`, control point `b`, end `c`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quadratic {
@@ -54,6 +58,13 @@ pub struct Quadratic {
 /// | 37 | `before` | what precedes the piece along the curve: 0 nothing, 1 a piece it touches, 2 a gap |
 /// | 38 | `after` | what follows: 0 nothing, 1 a piece it touches, 2 a gap |
 /// | 39 | `curve_length` | length of the whole curve, scene units |
+/// | 40-42 | `end` | point at t = 1, scene units |
+/// | 43-45 | `end_low` | what rounding took from `end` |
+/// | 46-48 | `end_tangent` | unit tangent at t = 1, along the curve |
+/// | 49-51 | `tangent_before` | unit tangent with which the piece before ends, along the curve; for the first piece that of the last |
+///
+/// Where two pieces touch, both have the same words for the point, and for the tangent if it does not turn by
+/// more than 1e-8: whatever is decided by them there falls on one side (`algorithms.md` §3.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 #[expect(missing_docs, reason = "the table above describes every field")]
@@ -82,11 +93,15 @@ pub struct Piece {
     pub before: f32,
     pub after: f32,
     pub curve_length: f32,
+    pub end: [f32; 3],
+    pub end_low: [f32; 3],
+    pub end_tangent: [f32; 3],
+    pub tangent_before: [f32; 3],
 }
 
 impl Piece {
     /// Words of one piece in the storage buffer `vol_curves`.
-    pub const WORDS: usize = 40;
+    pub const WORDS: usize = 52;
 
     /// The piece as words, in field order.
     pub fn words(&self) -> [f32; Self::WORDS] {
@@ -102,7 +117,7 @@ impl Piece {
             self.bend,
         ];
         words[..24].copy_from_slice(triples.as_flattened());
-        words[24..].copy_from_slice(&[
+        words[24..40].copy_from_slice(&[
             self.a3,
             self.a2,
             self.b11,
@@ -120,6 +135,8 @@ impl Piece {
             self.after,
             self.curve_length,
         ]);
+        let ends = [self.end, self.end_low, self.end_tangent, self.tangent_before];
+        words[40..].copy_from_slice(ends.as_flattened());
         words
     }
 }
@@ -129,6 +146,8 @@ impl Piece {
 pub struct CurveTable {
     /// Canonical pieces in the order of the curve; empty only for an empty curve.
     pub pieces: Vec<Piece>,
+    /// Boxes around consecutive pieces; none for a curve of at most [`FEW_PIECES`].
+    pub nodes: Vec<Node>,
     /// Length of the whole curve, scene units.
     pub length: f64,
     /// The segments the table was made from, coordinates held as [`prepare`] says.
@@ -144,7 +163,15 @@ impl CurveTable {
     pub fn words(&self) -> Vec<f32> {
         self.pieces.iter().flat_map(Piece::words).collect()
     }
+
+    /// All nodes as words of that buffer, node `i` at word `i * Node::WORDS` of them.
+    pub fn node_words(&self) -> Vec<f32> {
+        self.nodes.iter().flat_map(Node::words).collect()
+    }
 }
+
+/// Tangents that differ by less at a joint are one.
+const SMOOTH: f64 = 1e-8;
 
 /// Prepare a curve; the parameter t runs 0..1 over the whole of it, evenly per segment.
 ///
@@ -160,13 +187,14 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
     let segments: Vec<Quadratic> = segments.iter().map(held).collect();
     let parts = split_all(&segments);
     let length = parts.iter().map(Part::length).sum();
+    let tangents = tangents_along(&parts);
     let mut pieces = Vec::with_capacity(parts.len());
     let mut offset = 0.0;
     let mut carried: Option<([f64; 3], [f64; 3])> = None;
     let mut first: Option<([f64; 3], [f64; 3])> = None;
     let mut bend_angle = None;
     for (i, part) in parts.iter().enumerate() {
-        let [enter, leave] = part.tangents_along();
+        let [enter, leave] = tangents[i];
         let entering = match carried {
             Some((normal, before)) => transport(normal, before, enter),
             None => initial_normal(enter),
@@ -178,18 +206,38 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
             // The part bends from its entering tangent towards its leaving one.
             bend_angle = Some(angle_about(enter, entering, leave));
         }
-        let neighbours = [
-            i.checked_sub(1).map_or(0.0, |j| link(&parts[j], part)),
-            parts.get(i + 1).map_or(0.0, |next| link(part, next)),
-        ];
-        pieces.push(part.piece(normal, offset, length, neighbours));
+        let [_, before] = tangents[i.checked_sub(1).unwrap_or(parts.len() - 1)];
+        let place = Place {
+            normal,
+            offset,
+            length,
+            tangents: [before, enter, leave],
+            neighbours: [
+                i.checked_sub(1).map_or(0.0, |j| link(&parts[j], part)),
+                parts.get(i + 1).map_or(0.0, |next| link(part, next)),
+            ],
+        };
+        pieces.push(part.piece(&place));
         offset += part.length();
         carried = Some((leaving, leave));
     }
     let turn = first.zip(carried).map_or(0.0, |((normal, tangent), (last, leave))| {
         angle_about(tangent, normal, transport(last, leave, tangent))
     });
-    CurveTable { pieces, length, segments, turn, bend_angle: bend_angle.unwrap_or(0.0) }
+    let nodes = boxes::tree(&pieces);
+    CurveTable { pieces, nodes, length, segments, turn, bend_angle: bend_angle.unwrap_or(0.0) }
+}
+
+/// Unit tangents along the curve where it enters and leaves each part; the same where they agree.
+fn tangents_along(parts: &[Part]) -> Vec<[[f64; 3]; 2]> {
+    let mut tangents: Vec<[[f64; 3]; 2]> = parts.iter().map(Part::tangents_along).collect();
+    for i in 0..tangents.len() {
+        let next = tangents[(i + 1) % parts.len()][0];
+        if norm(sub(next, tangents[i][1])) < SMOOTH {
+            tangents[i][1] = next;
+        }
+    }
+    tangents
 }
 
 /// Angle about a unit vector from one direction across it to another.
@@ -264,6 +312,7 @@ fn held(segment: &Quadratic) -> Quadratic {
 /// A canonical piece in f64, before the frame is known.
 struct Part {
     origin: [f64; 3],
+    end: [f64; 3],
     b1: [f64; 3],
     b2: [f64; 3],
     bend: [f64; 3],
@@ -274,6 +323,19 @@ struct Part {
     flat: bool,
     /// Speed zero at the start, hence straight.
     cusp: bool,
+}
+
+/// Where a part stands in its curve.
+struct Place {
+    /// U at the start of the canonical piece.
+    normal: [f64; 3],
+    /// Length of what comes before, and of the whole curve.
+    offset: f64,
+    length: f64,
+    /// Where the part before leaves, and where this one is entered and left.
+    tangents: [[f64; 3]; 3],
+    /// The words `before` and `after`.
+    neighbours: [f32; 2],
 }
 
 /// Canonical parts of all segments; one point if nothing else is left of a non-empty curve.
@@ -288,6 +350,7 @@ fn split_all(segments: &[Quadratic]) -> Vec<Part> {
     if let (true, Some(first)) = (parts.is_empty(), segments.first()) {
         parts.push(Part {
             origin: first.a,
+            end: first.a,
             b1: [0.0; 3],
             b2: [0.0; 3],
             bend: [0.0; 3],
@@ -315,10 +378,16 @@ fn split(segment: &Quadratic, t_first: f64, share: f64, shortest: f64, parts: &m
         let (t0, t1) = (range[0], range[1]);
         // The orientation comes from the vertex, never from the dot product recomputed at a cut.
         let reversed = 0.5 * (t0 + t1) < vertex;
-        let (start, h) = if reversed { (t1, t0 - t1) } else { (t0, t1 - t0) };
-        let origin = along(along(segment.a, 2.0 * start, b1), start * start, b2);
+        let (start, last) = if reversed { (t1, t0) } else { (t0, t1) };
+        let h = last - start;
+        let point = |t: f64| {
+            // The very same point as that of the segment after.
+            if t == 1.0 { segment.c } else { along(along(segment.a, 2.0 * t, b1), t * t, b2) }
+        };
+        let (origin, end) = (point(start), point(last));
         let part = Part {
             origin,
+            end,
             b1: along(b1, start, b2).map(|x| x * h),
             b2: b2.map(|x| x * h * h),
             bend: cross(b1, b2).map(|x| x * h * h * h),
@@ -382,21 +451,19 @@ impl Part {
 
     /// Where the curve enters and leaves the part.
     fn points_along(&self) -> [[f64; 3]; 2] {
-        let far = along(along(self.origin, 2.0, self.b1), 1.0, self.b2);
-        if self.reversed { [far, self.origin] } else { [self.origin, far] }
+        if self.reversed { [self.end, self.origin] } else { [self.origin, self.end] }
     }
 
-    /// Round to the table. `neighbours`: the words `before` and `after`.
-    fn piece(&self, normal: [f64; 3], offset: f64, length: f64, neighbours: [f32; 2]) -> Piece {
+    /// Round to the table.
+    fn piece(&self, place: &Place) -> Piece {
         let round = |v: [f64; 3]| v.map(|x| x as f32);
-        let [enter, leave] = self.tangents_along();
-        let tangent = if self.reversed { leave } else { enter };
+        let [tangent_before, enter, leave] = place.tangents;
+        let [tangent, end_tangent] = if self.reversed { [leave, enter] } else { [enter, leave] };
         let (b11, a2, a3) = (dot(self.b1, self.b1), dot(self.b1, self.b2).max(0.0), dot(self.b2, self.b2));
         let q = if self.flat { 0.0 } else { a3.sqrt() };
-        let origin = round(self.origin);
-        let back = self.origin.iter().zip(origin).map(|(exact, rounded)| (exact - f64::from(rounded)) as f32);
-        let mut origin_low = [0.0; 3];
-        origin_low.iter_mut().zip(back).for_each(|(low, x)| *low = x);
+        let (origin, origin_low) = split_digits(self.origin);
+        let (end, end_low) = split_digits(self.end);
+        let &Place { normal, offset, length, neighbours, .. } = place;
         Piece {
             origin,
             origin_low,
@@ -422,8 +489,18 @@ impl Part {
             before: neighbours[0],
             after: neighbours[1],
             curve_length: length as f32,
+            end,
+            end_low,
+            end_tangent: round(end_tangent),
+            tangent_before: round(tangent_before),
         }
     }
+}
+
+/// A point rounded, and what rounding took from it.
+fn split_digits(point: [f64; 3]) -> ([f32; 3], [f32; 3]) {
+    let rounded = point.map(|x| x as f32);
+    (rounded, std::array::from_fn(|i| (point[i] - f64::from(rounded[i])) as f32))
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
 use vol_language::hir;
@@ -90,6 +90,10 @@ pub(crate) struct Lowerer<'a> {
     curves: Vec<Curve>,
     measures: Vec<(u32, Measure)>,
     tubes: Vec<TubeSizes>,
+    /// Feet on curves, by index, that loops around the expression at hand go through.
+    feet: Vec<(u32, tube::Foot)>,
+    /// Feet that decide, by curve and point: each is a loop, which is not to be run twice.
+    deciding_feet: HashMap<(u32, [ValueId; 3]), tube::Foot>,
     /// Values of the bindings in scope.
     environment: Environment,
     lets: Vec<Option<Lowered<Value>>>,
@@ -125,6 +129,8 @@ impl<'a> Lowerer<'a> {
             curves: Vec::new(),
             measures: Vec::new(),
             tubes: Vec::new(),
+            feet: Vec::new(),
+            deciding_feet: HashMap::new(),
             environment: Environment::new(hir.local_count),
             lets: vec![None; hir.lets.len()],
             choices: HashSet::new(),

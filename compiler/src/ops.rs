@@ -121,13 +121,18 @@ pub enum Op {
     /// arc length, and of arc length per length along the tangent: 1 / stretch, at most 20, or 0 where
     /// the foot stays at an end or a corner.
     ClosestGradient,
+    /// Next foot of (x, y, z) on a curve, a local minimum of the distance along it: x, y, z, the number
+    /// from which on to look, the largest distance, whether the curve is closed; data is the curve.
+    /// Results: number after that of the foot (the operand if there is none), t, arc length, x and y in
+    /// the frame, distance (1e18 if there is none), overshoot, stretch.
+    Foot,
 }
 
 impl Op {
     /// Whether the data is a curve.
     #[must_use]
     pub fn reads_curve(self) -> bool {
-        matches!(self, Self::Closest | Self::ClosestGradient)
+        matches!(self, Self::Closest | Self::ClosestGradient | Self::Foot)
     }
 }
 
@@ -183,7 +188,7 @@ pub struct Operation {
     /// Range rule.
     pub(crate) range: range::RangeRule,
     /// WGSL text with `{0}`, `{1}` … for operands, `{d}` for the data, `{first}` and `{count}` for
-    /// the pieces of the curve.
+    /// the pieces of the curve, `{nodes}` and `{node_count}` for its boxes.
     pub wgsl: &'static str,
     /// What follows the WGSL value to read each result: nothing for operations with one.
     pub wgsl_extract: &'static [&'static str],
@@ -231,6 +236,7 @@ pub static TABLE: &[Operation] = &[
     noise::HASH,
     curve::CLOSEST,
     curve::CLOSEST_GRADIENT,
+    curve::FOOT,
 ];
 
 /// The row of an operation.

@@ -83,7 +83,7 @@ pub struct Curve {
 /// the slope of the radius; the factor that makes `|P - Q| - r` safe there; from what distance on
 /// the flat ends do not count; the factor that makes the length to an end safe; the largest such
 /// distance; by how much the frame of a closed curve is turned per length, so that it fits; the angle
-/// from U to the centre of curvature, to be subtracted.
+/// from U to the centre of curvature, to be subtracted; the length of the curve.
 #[derive(Clone, Copy, Debug)]
 pub struct TubeSizes {
     /// The curve.
@@ -100,7 +100,7 @@ pub struct TubeSizes {
 
 impl TubeSizes {
     /// How many numbers there are.
-    pub const COUNT: usize = 8;
+    pub const COUNT: usize = 9;
 }
 
 /// How a tube ends.

@@ -5,7 +5,7 @@
 //! | part | from |
 //! |---|---|
 //! | bindings | [`layout`], with the words that the host puts into the buffers |
-//! | prelude: `fun.wgsl`, `noise.wgsl` and its folder, `curve.wgsl` | kept as files, included where called |
+//! | prelude: `fun.wgsl`, `noise.wgsl` and its folder, `curve.wgsl`, `feet.wgsl` | kept as files, included where called |
 //! | `fn vol_f0(x0: f32, …)`, one per IR function | [`expr`] |
 //! | an entry point | [`evaluation_module`], [`render`] |
 //!
@@ -38,7 +38,7 @@ pub use layout::{curve_words, permutation_words, uniform_words};
 pub const EVALUATION_GROUP: u32 = 64;
 
 /// Prelude files, those that others call first.
-const PRELUDE: [&str; 7] = [
+const PRELUDE: [&str; 8] = [
     include_str!("wgsl/fun.wgsl"),
     include_str!("wgsl/noise.wgsl"),
     include_str!("wgsl/noise/perlin4.wgsl"),
@@ -46,6 +46,7 @@ const PRELUDE: [&str; 7] = [
     include_str!("wgsl/noise/simplex.wgsl"),
     include_str!("wgsl/noise/worley.wgsl"),
     include_str!("wgsl/curve.wgsl"),
+    include_str!("wgsl/feet.wgsl"),
 ];
 
 /// A text that naga does not accept: a fault of this crate, never of a scene.
@@ -198,15 +199,16 @@ mod tests {
         };
         // In order: functions, noise, its four rooms, curves.
         let found = |text: &str| PRELUDE.map(|part| u8::from(text.contains(part)));
-        assert_eq!(found(&with("")), [0; 7]);
-        assert_eq!(found(&with("%1 = sin %0")), [1, 0, 0, 0, 0, 0, 0]);
-        assert_eq!(found(&with("%1 = perlin[0] %0 %0 %0")), [1, 1, 0, 0, 0, 0, 0]);
-        assert_eq!(found(&with("%1 = perlin4[0] %0 %0 %0 %0")), [1, 1, 1, 0, 0, 0, 0]);
-        assert_eq!(found(&with("%1 = value[0] %0 %0 %0")), [1, 1, 0, 1, 0, 0, 0]);
-        assert_eq!(found(&with("%1 = simplex[0] %0 %0 %0")), [1, 1, 0, 0, 1, 0, 0]);
-        assert_eq!(found(&with("%1 = worley[0] %0 %0 %0")), [1, 1, 0, 0, 0, 1, 0]);
-        assert_eq!(found(&with("%1 = hash[0] %0 %0 %0 %0")), [1, 1, 0, 0, 0, 0, 0]);
-        assert_eq!(found(&with("%1 = closest[0] %0 %0 %0")), [1, 0, 0, 0, 0, 0, 1]);
+        assert_eq!(found(&with("")), [0; 8]);
+        assert_eq!(found(&with("%1 = sin %0")), [1, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = perlin[0] %0 %0 %0")), [1, 1, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = perlin4[0] %0 %0 %0 %0")), [1, 1, 1, 0, 0, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = value[0] %0 %0 %0")), [1, 1, 0, 1, 0, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = simplex[0] %0 %0 %0")), [1, 1, 0, 0, 1, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = worley[0] %0 %0 %0")), [1, 1, 0, 0, 0, 1, 0, 0]);
+        assert_eq!(found(&with("%1 = hash[0] %0 %0 %0 %0")), [1, 1, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(found(&with("%1 = closest[0] %0 %0 %0")), [1, 0, 0, 0, 0, 0, 1, 0]);
+        assert_eq!(found(&with("%1 = foot[0] %0 %0 %0 %0 %0 %0")), [1, 0, 0, 0, 0, 0, 1, 1]);
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub enum ChoiceKind {
     Caps,
     /// How the frame of a tube is carried along its curve.
     Frame,
+    /// What decides where a tube overlaps itself.
+    Overlap,
     /// How holes of occluders are closed.
     HoleFilling,
     /// A layer of a transfer function.
@@ -58,6 +60,7 @@ impl ChoiceKind {
             Self::Lighting => "lighting",
             Self::Caps => "caps",
             Self::Frame => "frame",
+            Self::Overlap => "overlap",
             Self::HoleFilling => "hole filling",
             Self::Layer => "layer",
             Self::Blend => "blend",
@@ -92,6 +95,11 @@ impl ChoiceKind {
             Self::Frame => vec![
                 bare("minimal", "turns no more about the curve than it must"),
                 bare("frenet", "follows the curvature"),
+            ],
+            Self::Overlap => vec![
+                bare("nearest", "the closest point of the curve"),
+                bare("min_ratio", "the least distance over the radius: the union of all parts"),
+                bare("sum", "all parts: their densities add up"),
             ],
             Self::HoleFilling => hole_fillings(),
             Self::Layer => layers(),

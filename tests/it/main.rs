@@ -35,6 +35,7 @@ mod spec;
 mod stress;
 mod support;
 mod surfaces;
+mod tubes;
 mod ui;
 
 use libtest_mimic::{Arguments, Trial};
@@ -69,6 +70,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(surfaces::trials());
     trials.extend(spec::trials());
     trials.extend(stress::trials());
+    trials.extend(tubes::trials());
     trials.extend(ui::trials());
     #[cfg(feature = "gpu")]
     trials.extend(gpu_device::trials());

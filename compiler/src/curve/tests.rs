@@ -39,6 +39,7 @@ fn layout() {
     number!(origin, origin_low, b1, b2, tangent, normal, binormal, bend);
     number!(a3, a2, b11, vertex, inv_a3, t_start, t_span, s_start, sense, q);
     number!(log_scale, log_base, straight, before, after, curve_length);
+    number!(end, end_low, end_tangent, tangent_before);
     let expected: [f32; Piece::WORDS] = std::array::from_fn(|i| i as f32);
     assert_eq!(piece.words(), expected);
 }

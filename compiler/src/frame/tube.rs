@@ -118,6 +118,7 @@ impl Space<'_> {
             ends.depth,
             turn_rate,
             -table.bend_angle,
+            table.length,
         ];
         Measured { numbers, safe, loose }
     }

@@ -3,7 +3,7 @@
 use super::{Builtin, call, optional, required};
 use crate::lower::curve::{self, CurveValue, Point};
 use crate::lower::shape::Shape;
-use crate::lower::tube::{self, Outline};
+use crate::lower::tube::{self, Outline, Overlap};
 use crate::lower::value::Value;
 use crate::lower::{Lowered, Lowerer};
 use crate::program::Caps;
@@ -140,10 +140,13 @@ fn tube() -> Builtin {
         choice("caps", ChoiceKind::Caps, "flat"),
         choice("frame", ChoiceKind::Frame, "minimal"),
         flag("conserve_mass"),
+        choice("overlap", ChoiceKind::Overlap, "nearest"),
     ];
     let doc = "tube around a curve; radius and twist are numbers or functions of t (0 to 1) or (t, l); caps: flat, round or \
                open (goes on straight without end); frame: minimal or frenet; conserve_mass divides densities by q.stretch; \
-               local coordinates are (x / radius, l, y / radius), with stretch l / length in the middle";
+               local coordinates are (x / radius, l, y / radius), with stretch l / length in the middle; overlap, where the tube \
+               meets itself: nearest (the closest point of the curve decides), min_ratio (the least distance over the radius: the \
+               union of all its parts) or sum (densities of a medium add up over its parts)";
     call("tube", params, Type::Shape, doc, |lowerer, span, a| {
         let caps = match &*word(&a[4]) {
             "flat" => Caps::Flat,
@@ -158,6 +161,12 @@ fn tube() -> Builtin {
             caps,
             frenet: &*word(&a[5]) == "frenet",
             conserve_mass: is_set(lowerer, a, 6, "`conserve_mass`", span)?,
+            overlap: match &*word(&a[7]) {
+                "nearest" => Overlap::Nearest,
+                "min_ratio" => Overlap::MinRatio,
+                "sum" => Overlap::Sum,
+                other => unreachable!("the checker knows no overlap {other}"),
+            },
         };
         Shape::value(tube::tube(lowerer, a[0].curve(), outline, span)?, lowerer, span)
     })

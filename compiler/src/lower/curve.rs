@@ -30,8 +30,8 @@ pub(crate) type Point = [ValueId; 3];
 /// Pieces of a circle, and of a turn of a helix: an arc of angle 2 h deviates by h^4 / 8 radii.
 const ARCS: usize = 16;
 
-/// Most pieces of a curve: each costs every sample of a tube a few nanoseconds.
-const MOST_PIECES: usize = 20_000;
+/// Most pieces of a curve: enough for 10 000 cubics.
+const MOST_PIECES: usize = 100_000;
 
 /// Most parts into which a cubic is cut; each becomes two quadratics. Enough for every cubic:
 /// |a - 3b + 3c - d| is at most twice the length of its control polygon, so the deviation is at most

@@ -28,6 +28,22 @@ struct Field {
     ty: Ty,
 }
 
+/// Goes into a loop of so many steps; returns what [`leave`] asks for.
+pub(super) fn enter(lowerer: &mut Lowerer<'_>, most: u32, span: Span) -> Lowered<u32> {
+    let outer_steps = lowerer.loop_steps;
+    let steps = outer_steps.saturating_mul(most.max(1));
+    if steps > MAX_NESTED_STEPS {
+        return Err(too_often(steps, span));
+    }
+    lowerer.loop_steps = steps;
+    Ok(outer_steps)
+}
+
+/// Comes out of a loop.
+pub(super) fn leave(lowerer: &mut Lowerer<'_>, outer_steps: u32) {
+    lowerer.loop_steps = outer_steps;
+}
+
 impl Lowerer<'_> {
     /// The record of the last state.
     pub(super) fn iterate(&mut self, iterate: &Iterate, span: Span) -> Lowered<Value> {
@@ -44,14 +60,9 @@ impl Lowerer<'_> {
         if first.len() > MAX_NUMBERS {
             return Err(too_large(first.len(), span));
         }
-        let outer_steps = self.loop_steps;
-        self.loop_steps = outer_steps.saturating_mul(most.max(1));
-        if self.loop_steps > MAX_NESTED_STEPS {
-            let steps = std::mem::replace(&mut self.loop_steps, outer_steps);
-            return Err(too_often(steps, count_span));
-        }
+        let outer_steps = enter(self, most, count_span)?;
         let last = self.repeat(iterate, count, most, &fields, first);
-        self.loop_steps = outer_steps;
+        leave(self, outer_steps);
         Ok(Value::Record(self.record(&fields, &last?).into()))
     }
 

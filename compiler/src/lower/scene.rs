@@ -4,6 +4,7 @@ mod medium;
 
 use super::optics::Material;
 use super::shape::{self, Shape};
+use super::tube::Tube;
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
@@ -236,6 +237,9 @@ fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan:
     if let Material::Cloud3d { cloud, depth, density } = &*material {
         return medium::cloud(lowerer, block, cloud, [*depth, *density], plan);
     }
+    if shape.has_tube(&Tube::by_feet) {
+        return Err(overlapping_surface(span));
+    }
     let p = lowerer.position();
     let point = Rc::new(LocalPoint { world: p, region: Rc::clone(&shape) });
     let distance = shape.distance(lowerer, p)?;
@@ -262,6 +266,13 @@ fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan:
     add_field(lowerer, fields, format!("local:{name}"), &local);
     plan.objects.push(object);
     Ok(())
+}
+
+fn overlapping_surface(span: Span) -> Box<Diagnostic> {
+    let message = "the surface of a tube with this overlap rule cannot be marched safely";
+    let label = "distances to parts with different radii are no bounds";
+    let help = "leave `overlap` out, or fill it with a medium; for crossing parts join several tubes by `|`";
+    Box::new(Diagnostic::error("E0503", message, span, label).with_help(help))
 }
 
 fn solid(lowerer: &mut Lowerer<'_>, block: &Block, key: &str) -> Lowered<(Rc<Shape>, Span)> {

@@ -251,6 +251,33 @@ impl Shape {
         }
     }
 
+    /// The tube that the shape is, moved or not, if media add up over its feet; with the point in its
+    /// coordinates.
+    pub(crate) fn adding_up(&self, graph: &mut crate::ir::graph::Graph, p: [ValueId; 3]) -> Option<(&Tube, [ValueId; 3])> {
+        match &self.kind {
+            Kind::Tube(tube) => tube.adds_up().then_some((tube, p)),
+            Kind::Transformed { child, transform } => {
+                let inner = transform.to_child(graph, p);
+                child.adding_up(graph, inner)
+            }
+            Kind::Primitive(_)
+            | Kind::Implicit { .. }
+            | Kind::Union { .. }
+            | Kind::Intersection { .. }
+            | Kind::Difference { .. }
+            | Kind::Repeated { .. }
+            | Kind::Rounded { .. }
+            | Kind::Shell { .. }
+            | Kind::Displaced { .. } => None,
+        }
+    }
+
+    /// Whether some tube in the shape is as asked.
+    pub(crate) fn has_tube(&self, asked: &dyn Fn(&Tube) -> bool) -> bool {
+        matches!(&self.kind, Kind::Tube(tube) if asked(tube))
+            || self.kind.children().iter().any(|child| child.has_tube(asked))
+    }
+
     /// A coordinate of the region's own map at a world position.
     pub(crate) fn local_field(
         &self,

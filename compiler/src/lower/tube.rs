@@ -1,7 +1,11 @@
 //! Tubes: a curve as axis, radius and twist as functions along it (Moinet 2022, section 3).
 //!
-//! A point belongs to the tube by its closest point on the axis, its foot: where the tube overlaps
-//! itself the nearest part of the axis decides, and the coordinates of the point are those at its foot.
+//! A point belongs to the tube by its closest point on the axis, its foot, and has the coordinates there;
+//! where the tube overlaps itself other rules may be asked for ([`overlap`]).
+
+mod overlap;
+
+pub(crate) use overlap::Overlap;
 
 use super::curve::CurveValue;
 use super::shape::Kind;
@@ -31,6 +35,8 @@ pub(crate) struct Outline {
     pub(crate) frenet: bool,
     /// Whether media thin out where the tube is wide or long.
     pub(crate) conserve_mass: bool,
+    /// What decides where it overlaps itself.
+    pub(crate) overlap: Overlap,
 }
 
 /// A tube: all points whose closest point on the curve is nearer than the radius there.
@@ -56,12 +62,17 @@ struct Sizes {
     end_limit: ValueId,
     end_scale: ValueId,
     end_depth: ValueId,
+    /// Of the curve.
+    length: ValueId,
     twist: ValueId,
     twist_rate: ValueId,
 }
 
-/// The closest point of the axis and the tube's own numbers there.
-struct Foot {
+/// A point of the axis, mostly the closest one, and the tube's own numbers there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Foot {
+    /// The kernels' t, even per segment.
+    even_t: ValueId,
     t: ValueId,
     arc_length: ValueId,
     curve_length: ValueId,
@@ -110,7 +121,7 @@ impl Tube {
         let radius = self.radius_along(lowerer)?;
         self.varies = lowerer.graph.rate(radius) == Rate::Point;
         let exact = !self.varies && matches!(self.caps(), Caps::Round | Caps::Open);
-        if exact && !self.outline.frenet {
+        if exact && !self.outline.frenet && !self.by_feet() {
             return Ok(());
         }
         let slope = if self.varies {
@@ -124,7 +135,7 @@ impl Tube {
         let radius = lowerer.function("radius", 2, &[radius]);
         let sizes = TubeSizes { curve: self.index, radius, slope, caps: self.caps(), first_input: 0 };
         let (index, numbers) = lowerer.tube_sizes(sizes);
-        let [largest, shell, wall_scale, end_limit, end_scale, end_depth, end_twist, frenet] = numbers;
+        let [largest, shell, wall_scale, end_limit, end_scale, end_depth, end_twist, frenet, length] = numbers;
         let zero = lowerer.graph.number(0.0);
         let twist = if self.outline.frenet { frenet } else { zero };
         let twist_rate = if self.curve.closed && !self.outline.frenet { end_twist } else { zero };
@@ -136,6 +147,7 @@ impl Tube {
             end_limit,
             end_scale,
             end_depth,
+            length,
             twist,
             twist_rate,
         });
@@ -149,21 +161,46 @@ impl Tube {
         Ok(lowerer.call_numbers(&self.outline.radius, &[t, l])?.scalar())
     }
 
+    /// The foot that decides about a point; inside a loop over feet the one at hand.
     fn foot(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<Foot> {
+        if let Some((_, foot)) = lowerer.feet.iter().rev().find(|(index, _)| *index == self.index) {
+            return Ok(*foot);
+        }
+        if self.by_feet() {
+            let known = (self.index, p);
+            if let Some(foot) = lowerer.deciding_feet.get(&known) {
+                return Ok(*foot);
+            }
+            let foot = self.foot_by_ratio(lowerer, p)?;
+            lowerer.deciding_feet.insert(known, foot);
+            return Ok(foot);
+        }
         let results = lowerer.graph.apply_all(Op::Closest, self.index, &p);
-        let [t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor] = results[..] else {
+        let [t, arc_length, curve_length, x, y, distance, overshoot, stretch] = results[..] else {
             unreachable!("the operation table gives the closest point eight results")
         };
-        let t = self.curve.parameter(&mut lowerer.graph, t);
+        let foot = self.foot_of(lowerer, [t, arc_length, x, y, distance, overshoot, stretch])?;
+        Ok(Foot { curve_length, ..foot })
+    }
+
+    /// A foot with what the tube makes of it, from t, arc length, x, y, distance, overshoot and stretch.
+    fn foot_of(&self, lowerer: &mut Lowerer<'_>, at: [ValueId; 7]) -> Lowered<Foot> {
+        let [even_t, arc_length, x, y, distance, overshoot, curvature_factor] = at;
+        let t = self.curve.parameter(&mut lowerer.graph, even_t);
         let radius = lowerer.call_numbers(&self.outline.radius, &[t, arc_length])?.scalar();
         let least = lowerer.graph.number(LEAST_RADIUS);
         let radius = lowerer.graph.max(radius, least);
-        Ok(Foot { t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor, radius })
+        let zero = lowerer.graph.number(0.0);
+        let curve_length = self.sizes.as_ref().map_or(zero, |sizes| sizes.length);
+        Ok(Foot { even_t, t, arc_length, curve_length, x, y, distance, overshoot, curvature_factor, radius })
     }
 
     /// Signed distance bound: its size never exceeds the distance to the surface of the tube, given
     /// the numbers of [`crate::frame`]'s `tube` module, where the proof is.
     pub(crate) fn distance(&self, lowerer: &mut Lowerer<'_>, p: [ValueId; 3]) -> Lowered<ValueId> {
+        if self.by_feet() {
+            return self.distance_by_feet(lowerer, p);
+        }
         let foot = self.foot(lowerer, p)?;
         let graph = &mut lowerer.graph;
         let wall = self.wall(graph, &foot);
@@ -182,8 +219,13 @@ impl Tube {
 
     /// Beyond the radius, as the caps have it: `|P - Q| - r`.
     fn beyond_radius(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
-        let off = if self.caps() == Caps::Open { graph.length(&[foot.x, foot.y]) } else { foot.distance };
+        let off = self.off(graph, foot);
         graph.sub(off, foot.radius)
+    }
+
+    /// Distance from the axis, as the caps have it.
+    fn off(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
+        if self.caps() == Caps::Open { graph.length(&[foot.x, foot.y]) } else { foot.distance }
     }
 
     /// Bound on the distance to the wall.
@@ -249,6 +291,12 @@ impl Tube {
     /// Distance to the wall along the radius or to the nearer flat end along the axis: smooth where
     /// the bound by which surfaces are marched is not.
     fn depth(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
+        let beyond = self.beyond(graph, foot);
+        graph.apply(Op::Neg, &[beyond])
+    }
+
+    /// How far a point is outside by a foot: negative inside.
+    fn beyond(&self, graph: &mut Graph, foot: &Foot) -> ValueId {
         let mut beyond = self.beyond_radius(graph, foot);
         if self.caps() == Caps::Flat {
             let inside = from_nearer_end(graph, foot);
@@ -256,7 +304,7 @@ impl Tube {
             let ends = beyond_end(graph, foot, foot.overshoot, inside);
             beyond = graph.max(beyond, ends);
         }
-        graph.apply(Op::Neg, &[beyond])
+        beyond
     }
 
     /// Offset from the axis, turned by the twist.

@@ -6,6 +6,10 @@
 //! Example: 0.1 from a straight curve the foot moves as far as the position does, half way to the
 //! focal line of an arc twice as far.
 
+mod feet;
+
+pub(super) use feet::FOOT;
+
 use super::error::{UNIT, decision, operand};
 use super::interval::Interval;
 use super::{Context, MAX_RESULTS, Op, Operation, Results, Ty, range, slope};
@@ -44,7 +48,7 @@ pub(super) const CLOSEST: Operation = Operation {
     error: |x, e, _, context| errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: along,
     range: range::unknown,
-    wgsl: "vol_closest(vec3f({0}, {1}, {2}), {first}, {count})",
+    wgsl: "vol_closest(vec3f({0}, {1}, {2}), VolCurve({first}, {count}, {nodes}, {node_count}))",
     wgsl_extract: &[".t", ".arc_length", ".curve_length", ".x", ".y", ".distance", ".overshoot", ".stretch"],
     domain: &[(-4.0, 4.0); 3],
 };
@@ -65,7 +69,7 @@ pub(super) const CLOSEST_GRADIENT: Operation = Operation {
     error: |x, e, _, context| movement_errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: none,
     range: range::unknown,
-    wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), {first}, {count})",
+    wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), VolCurve({first}, {count}, {nodes}, {node_count}))",
     wgsl_extract: &[
         ".direction.x",
         ".direction.y",
@@ -168,8 +172,21 @@ fn results(at: &ReferencePoint) -> Results<f64> {
     [at.t, at.arc_length, at.curve_length, at.x, at.y, at.distance, at.overshoot, at.stretch]
 }
 
+/// Curves of more segments are not searched for bounds: the reference looks at every segment in many places.
+const MANY_SEGMENTS: usize = 64;
+
+/// What is known of any place and any curve.
+fn rough_bounds() -> Results<Interval> {
+    let size = Interval::new(0.0, f64::INFINITY);
+    let side = Interval::EVERYTHING;
+    [Interval::new(0.0, 1.0), size, size, side, side, size, size, Interval::new(0.0, LARGEST_STRETCH)]
+}
+
 /// Bounds over a box: the distance from its middle, the others by what they mean.
 fn bounds(p: [Interval; 3], segments: &[Quadratic]) -> Results<Interval> {
+    if segments.len() > MANY_SEGMENTS {
+        return rough_bounds();
+    }
     let middle = closest(p.map(Interval::middle), segments);
     let radius = p.iter().map(|x| x.radius() * x.radius()).sum::<f64>().sqrt();
     // The reference's sampling, bisection and quadrature leave less than this.

@@ -195,7 +195,7 @@ fn identity(op: Op, x: &Operands<'_>) -> Simplified {
         Op::Perlin | Op::PerlinGradient | Op::Fbm | Op::FbmGradient => Simplified::Same,
         Op::Perlin4 | Op::Perlin4Gradient | Op::Value | Op::ValueGradient => Simplified::Same,
         Op::Simplex | Op::SimplexGradient | Op::Worley | Op::WorleyGradient => Simplified::Same,
-        Op::Hash | Op::Closest | Op::ClosestGradient => Simplified::Same,
+        Op::Hash | Op::Closest | Op::ClosestGradient | Op::Foot => Simplified::Same,
     }
 }
 

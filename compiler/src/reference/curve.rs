@@ -8,6 +8,10 @@
 
 use crate::curve::{Quadratic, initial_normal};
 
+mod feet;
+
+pub use feet::{ReferenceFoot, next_foot};
+
 /// Intervals sampled per half segment.
 const SAMPLES: usize = 128;
 
@@ -47,23 +51,29 @@ pub fn closest(p: Vector, segments: &[Quadratic]) -> Option<ReferencePoint> {
         return segments.first().map(|s| at_point(p, s.a));
     };
     let Nearest { index, u, distance, gap } = nearest(p, &arms);
+    let found = described(p, &arms, index, u);
+    Some(ReferencePoint { curve_length: last.offset + last.length_to(1.0), distance, gap, ..found })
+}
+
+/// A point seen from the place `u` of an arm; length of the curve and gap are not known here.
+fn described(p: Vector, arms: &[Arm], index: usize, u: f64) -> ReferencePoint {
     let arm = &arms[index];
     let offset = sub(p, arm.point(u));
     let tangent = arm.tangent(u);
     let normal = arm.normal(u);
     let first_end = if index == 0 && u == 0.0 { -dot(offset, tangent) } else { 0.0 };
     let last_end = if index + 1 == arms.len() && u == 1.0 { dot(offset, tangent) } else { 0.0 };
-    Some(ReferencePoint {
+    ReferencePoint {
         t: arm.t(u),
         arc_length: arm.offset + arm.length_to(u),
-        curve_length: last.offset + last.length_to(1.0),
+        curve_length: 0.0,
         x: dot(offset, normal),
         y: dot(offset, cross(tangent, normal)),
-        distance,
+        distance: norm(offset),
         overshoot: first_end.max(last_end).max(0.0),
         stretch: (1.0 - dot(offset, arm.curvature(u))).clamp(0.0, 1e6),
-        gap,
-    })
+        gap: f64::INFINITY,
+    }
 }
 
 /// How the closest point of a curve moves, f64.

@@ -3,7 +3,8 @@
 // storage buffer `vol_curves: array<f32>`; the words of a piece are those of
 // `vol_compiler::curve::Piece`.
 
-const VOL_PIECE_WORDS: u32 = 40u;
+const VOL_PIECE_WORDS: u32 = 52u;
+const VOL_NODE_WORDS: u32 = 9u;
 // Below this a divisor counts as it: quotients stay finite.
 const VOL_TINY: f32 = 1e-30;
 // Distance to a curve without pieces, scene units.
@@ -75,8 +76,25 @@ fn vol_rough_cube_root(x: f32) -> f32 {
     return bitcast<f32>((bitcast<u32>(x) / 3u) + 709921077u);
 }
 
+// The foot inside a canonical piece, if it has one, and what decides between it and the start.
+struct VolInner {
+    t: f32,
+    dist_sq: f32,
+    a0: f32,
+    start_sq: f32,
+    dips: bool,
+}
+
 // Closest point of one canonical piece, given by its first word.
 fn vol_foot(p: vec3f, word: u32) -> VolFoot {
+    let inner = vol_inner(p, word);
+    // Prefer the start where it is itself a minimum and nearer.
+    let start_wins = (inner.a0 >= 0.0) & (inner.start_sq <= inner.dist_sq);
+    return VolFoot(select(inner.t, 0.0, start_wins), select(inner.dist_sq, inner.start_sq, start_wins));
+}
+
+// The largest root of g.
+fn vol_inner(p: vec3f, word: u32) -> VolInner {
     let b1 = vol_curve_vector(word + 6u);
     let b2 = vol_curve_vector(word + 9u);
     let vertex = vol_curves[word + 27u];
@@ -110,12 +128,9 @@ fn vol_foot(p: vec3f, word: u32) -> VolFoot {
     // Two polishing steps on g.
     let t1 = vol_polish_step(t0, a3, a2x3, a1, a0, low);
     let t2 = vol_polish_step(t1, a3, a2x3, a1, a0, low);
-    // Prefer the start where it is itself a minimum and nearer.
     let end = vol_reach(w, b1, b2, t2);
-    let dist_end = vol_dot(end, end);
-    let dist_start = vol_dot(w, w);
-    let start_wins = (a0 >= 0.0) & (dist_start <= dist_end);
-    return VolFoot(select(t2, 0.0, start_wins), select(dist_end, dist_start, start_wins));
+    let dips = ((!is_flat) & (k > 0.0)) & ((e > 0.0) & (e < 1.0));
+    return VolInner(t2, vol_dot(end, end), a0, vol_dot(w, w), dips);
 }
 
 // One Newton step on `u^3 + gap3 u^2 + m u = k`, u >= 0.
@@ -278,32 +293,107 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
     );
 }
 
-// How the closest point of a whole curve moves: pieces `first .. first + count` of the buffer.
-fn vol_closest_gradient(point: vec3f, first: u32, count: u32) -> VolCurveSlopes {
-    let p = vol_held_point(point);
-    // Visit the pieces along the curve.
-    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
-    for (var index = 0u; index < count; index = index + 1u) {
-        search = vol_visit(search, p, (first + index) * VOL_PIECE_WORDS, index);
-    }
-    // Describe how the foot moves on the winner.
-    if (count == 0u) {
-        return VolCurveSlopes(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
-    }
-    return vol_slopes(p, (first + search.piece) * VOL_PIECE_WORDS, search.t);
+// Where a curve is: pieces `first .. first + count`, and its nodes from a word of the buffer on.
+struct VolCurve {
+    first: u32,
+    count: u32,
+    nodes: u32,
+    node_count: u32,
 }
 
-// Closest point of a whole curve: pieces `first .. first + count` of the buffer.
-fn vol_closest(point: vec3f, first: u32, count: u32) -> VolCurvePoint {
-    let p = vol_held_point(point);
-    // Visit the pieces along the curve.
-    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
-    for (var index = 0u; index < count; index = index + 1u) {
-        search = vol_visit(search, p, (first + index) * VOL_PIECE_WORDS, index);
+// By how much a squared distance to a foot is taken larger before boxes are compared with it.
+const VOL_LOOSE: f32 = 1.00001;
+
+// Squared distance from a point to the box of a node, given by its first word; 0 inside.
+fn vol_box_dist_sq(p: vec3f, word: u32) -> f32 {
+    let outside = max(max(vol_curve_vector(word) - p, p - vol_curve_vector(word + 3u)), vec3f(0.0));
+    return vol_dot(outside, outside);
+}
+
+// A squared distance within which the winner lies, given that to some foot.
+fn vol_bound_of(dist_sq: f32) -> f32 {
+    return dist_sq * VOL_LOOSE;
+}
+
+// The node after all of this one's tree; a leaf's is the next one.
+fn vol_node_skip(nodes: u32, node: u32) -> u32 {
+    return u32(vol_curves[(nodes + (node * VOL_NODE_WORDS)) + 6u]);
+}
+
+// The leaf that is found by always entering the nearer half, the first of equals.
+fn vol_likely_leaf(p: vec3f, nodes: u32) -> u32 {
+    var node = 0u;
+    for (var skip = vol_node_skip(nodes, 0u); skip != node + 1u; skip = vol_node_skip(nodes, node)) {
+        let front = node + 1u;
+        let back = vol_node_skip(nodes, front);
+        let front_sq = vol_box_dist_sq(p, nodes + (front * VOL_NODE_WORDS));
+        let back_sq = vol_box_dist_sq(p, nodes + (back * VOL_NODE_WORDS));
+        node = select(front, back, back_sq < front_sq);
     }
+    return node;
+}
+
+// Squared distance to the nearest foot on the pieces of a node.
+fn vol_nearest_in(p: vec3f, curve: VolCurve, node: u32) -> f32 {
+    let word = curve.nodes + (node * VOL_NODE_WORDS);
+    let end = u32(vol_curves[word + 8u]);
+    var nearest = VOL_LARGEST;
+    for (var index = u32(vol_curves[word + 7u]); index < end; index = index + 1u) {
+        nearest = min(nearest, vol_foot(p, (curve.first + index) * VOL_PIECE_WORDS).dist_sq);
+    }
+    return nearest;
+}
+
+// The closest point of a curve, from `vol_held_point`.
+fn vol_search(p: vec3f, curve: VolCurve) -> VolSearch {
+    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
+    // Visit the pieces along the curve.
+    if (curve.node_count == 0u) {
+        for (var index = 0u; index < curve.count; index = index + 1u) {
+            search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
+        }
+        return search;
+    }
+    // Pass over boxes that are farther than a foot.
+    var bound = vol_bound_of(vol_nearest_in(p, curve, vol_likely_leaf(p, curve.nodes)));
+    var at = 0u;
+    while (at < curve.node_count) {
+        let word = curve.nodes + (at * VOL_NODE_WORDS);
+        let skip = u32(vol_curves[word + 6u]);
+        if (vol_box_dist_sq(p, word) > bound) {
+            at = skip;
+            continue;
+        }
+        if (skip == at + 1u) {
+            let end = u32(vol_curves[word + 8u]);
+            for (var index = u32(vol_curves[word + 7u]); index < end; index = index + 1u) {
+                search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
+            }
+            bound = min(bound, vol_bound_of(search.dist_sq));
+        }
+        at = at + 1u;
+    }
+    return search;
+}
+
+// How the closest point of a whole curve moves.
+fn vol_closest_gradient(point: vec3f, curve: VolCurve) -> VolCurveSlopes {
+    let p = vol_held_point(point);
+    let search = vol_search(p, curve);
+    // Describe how the foot moves on the winner.
+    if (curve.count == 0u) {
+        return VolCurveSlopes(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 0.0, 1.0), 0.0, 0.0);
+    }
+    return vol_slopes(p, (curve.first + search.piece) * VOL_PIECE_WORDS, search.t);
+}
+
+// Closest point of a whole curve.
+fn vol_closest(point: vec3f, curve: VolCurve) -> VolCurvePoint {
+    let p = vol_held_point(point);
+    let search = vol_search(p, curve);
     // Describe the foot on the winner.
-    if (count == 0u) {
+    if (curve.count == 0u) {
         return VolCurvePoint(0.0, 0.0, 0.0, VOL_FAR, 0.0, VOL_FAR, 0.0, 1.0);
     }
-    return vol_describe(p, (first + search.piece) * VOL_PIECE_WORDS, search.t);
+    return vol_describe(p, (curve.first + search.piece) * VOL_PIECE_WORDS, search.t);
 }

@@ -9,7 +9,7 @@ mod noise;
 
 use super::LANES;
 use crate::math::{fun, noise as kernel};
-use vol_compiler::curve::{CurveTable, Piece};
+use vol_compiler::curve::{CurveTable, Node, Piece};
 use vol_compiler::ops::{MAX_RESULTS, Op};
 use vol_compiler::tape::MAX_OPERANDS;
 
@@ -67,13 +67,14 @@ pub(crate) fn apply(op: Op, data: u32, x: &Operands<'_>, out: &mut Out, curves: 
         Op::Worley => noise::worley::<1>(x, out, data),
         Op::WorleyGradient => noise::worley::<4>(x, out, data),
         Op::Hash => noise::each(x, out, |p| [kernel::hash(p, data)]),
-        Op::Closest => curve::closest(x, out, pieces(curves, data)),
-        Op::ClosestGradient => curve::closest_gradient(x, out, pieces(curves, data)),
+        Op::Closest => curve::closest(x, out, curve_parts(curves, data)),
+        Op::ClosestGradient => curve::closest_gradient(x, out, curve_parts(curves, data)),
+        Op::Foot => curve::next_foot(x, out, curve_parts(curves, data)),
     }
 }
 
-fn pieces(curves: &[CurveTable], data: u32) -> &[Piece] {
-    curves.get(data as usize).map_or(&[], |table| &table.pieces)
+fn curve_parts(curves: &[CurveTable], data: u32) -> (&[Piece], &[Node]) {
+    curves.get(data as usize).map_or((&[], &[]), |table| (&table.pieces, &table.nodes))
 }
 
 fn truth(holds: bool) -> f32 {

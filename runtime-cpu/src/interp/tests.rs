@@ -124,13 +124,71 @@ fn closest_points_are_those_of_the_kernel() {
     let body = "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = closest[0] %0 %1 %2\n%4 = extract %3 0\n\
         %5 = extract %3 3\n%6 = extract %3 7\n%7 = extract %3 5\nreturn %4 %5 %6 %7\n}";
     let module = module(vec![text::parse_function(body).expect("well-formed text")]);
-    let inputs = arguments(8, 100, 3);
-    let found = evaluate(&module, &inputs, 100);
-    let table = &tables()[0];
-    for i in 0..100 {
-        let expected = crate::math::curve::closest([inputs[0][i], inputs[1][i], inputs[2][i]], &table.pieces);
-        let expected = [expected.t, expected.x, expected.stretch, expected.distance];
-        assert_eq!([found[0][i], found[1][i], found[2][i], found[3][i]], expected);
+    let inputs = arguments(8, 300, 3);
+    // Short, long enough for boxes, and no curve at all.
+    let spiral = |i: usize| [0.1, 0.2].map(|part| (i as f64 * 0.2 + part) * 0.4);
+    let place = |angle: f64| [angle.cos() * 3.0, 0.2 * angle - 3.0, angle.sin() * (1.0 + 0.1 * angle)];
+    let long: Vec<Quadratic> = (0..500)
+        .map(|i| {
+            let [middle, end] = spiral(i).map(place);
+            Quadratic { a: place(i as f64 * 0.08), b: middle, c: end }
+        })
+        .collect();
+    for segments in [curves()[0].clone(), long, Vec::new()] {
+        let table = prepare(&segments);
+        let (tapes, curves) = (Tapes::of_module(&module), [table.clone()]);
+        let mut evaluator = Evaluator::of_parts(&tapes, &UNIFORMS, &curves);
+        let mut found = vec![vec![0.0; 300]; 4];
+        let slices: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let mut outputs: Vec<&mut [f32]> = found.iter_mut().map(Vec::as_mut_slice).collect();
+        evaluator.evaluate(FunctionId(0), &slices, &mut outputs);
+        for i in 0..300 {
+            let p = [inputs[0][i], inputs[1][i], inputs[2][i]];
+            let expected = crate::math::curve::closest(p, &table.pieces, &[]);
+            let expected = [expected.t, expected.x, expected.stretch, expected.distance];
+            assert_eq!([found[0][i], found[1][i], found[2][i], found[3][i]], expected);
+        }
+    }
+}
+
+/// Time per point of the batch kernel by length of the curve; run with `--ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn cost_by_length() {
+    let body = "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = closest[0] %0 %1 %2\n%4 = extract %3 5\nreturn %4\n}";
+    let module = module(vec![text::parse_function(body).expect("well-formed text")]);
+    let tapes = Tapes::of_module(&module);
+    for count in [1, 2, 4, 8, 10, 12, 16, 24, 32, 100, 1000, 10_000] {
+        let place = |i: usize| {
+            let angle = (i as f64 / count as f64) * 60.0;
+            [angle.cos() * (1.0 + 0.02 * angle), 0.05 * angle - 1.5, angle.sin()]
+        };
+        let segments: Vec<Quadratic> =
+            (0..count).map(|i| Quadratic { a: place(2 * i), b: place(2 * i + 1), c: place(2 * i + 2) }).collect();
+        let table = prepare(&segments);
+        let mut bare = table.clone();
+        bare.nodes.clear();
+        // Rays through the curve, 64 points each, side by side.
+        let points = 64 * 64;
+        let coordinate = |f: fn(f32, f32) -> f32| -> Vec<f32> {
+            (0..points).map(|i| f((i / 64) as f32 / 64.0, (i % 64) as f32 / 64.0)).collect()
+        };
+        let inputs =
+            [coordinate(|ray, t| 4.0 * t - 2.0 + 0.1 * ray), coordinate(|ray, _| 0.2 * ray), coordinate(|_, t| t - 0.5)];
+        let slices = inputs.each_ref().map(Vec::as_slice);
+        let time = |table: &CurveTable| {
+            let curves = [table.clone()];
+            let mut evaluator = Evaluator::of_parts(&tapes, &UNIFORMS, &curves);
+            let mut output = vec![0.0; points];
+            let mut least = f64::INFINITY;
+            for _ in 0..(20_000 / (count + 20)).clamp(3, 60) {
+                let start = std::time::Instant::now();
+                evaluator.evaluate(FunctionId(0), &slices, &mut [&mut output]);
+                least = least.min(start.elapsed().as_secs_f64());
+            }
+            least / points as f64 * 1e9
+        };
+        println!("{count} segments, {} pieces: {:.1} ns, all {:.1} ns", table.pieces.len(), time(&table), time(&bare));
     }
 }
 
@@ -144,7 +202,7 @@ fn closest_gradients_are_those_of_the_kernel() {
     let table = &tables()[0];
     for i in 0..100 {
         let p = [inputs[0][i], inputs[1][i], inputs[2][i]];
-        let expected = crate::math::curve::closest_gradient(p, &table.pieces);
+        let expected = crate::math::curve::closest_gradient(p, &table.pieces, &[]);
         let expected = [expected.direction[1], expected.tangent[0], expected.rate, expected.slide];
         assert_eq!([found[0][i], found[1][i], found[2][i], found[3][i]], expected);
     }

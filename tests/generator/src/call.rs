@@ -169,6 +169,8 @@ impl Generator<'_> {
             ("repeat", "count") => &["(2, 1, 3)", "(1, 1, 1)", "(0, 0, 1)"],
             ("repeat", "period") => &["(1.5, 2.0, 1.0)", "(40.0, 30.0, 50.0)"],
             ("repeat_polar", "count") => &["5", "1", "8"],
+            // Sums are for tubes that are a region by themselves.
+            ("tube", "overlap") => &["nearest", "min_ratio"],
             (_, "overlap") => &["1", "0"],
             ("catmull_rom" | "bspline", "points") => &[
                 "[(0.0, 0.0, 0.0), (0.5, 1.0, 0.0), (1.0, 0.0, 0.5)]",

@@ -1,6 +1,6 @@
 //! Curves joined to a path.
 
-use super::{CurveValue, Point, Run, known_points, length, minus, within_limit};
+use super::{CurveValue, MOST_PIECES, Point, Run, combination, known_points, length, minus, within_limit};
 use crate::ir::graph::Graph;
 use crate::lower::{Lowered, Lowerer};
 use std::rc::Rc;
@@ -9,6 +9,9 @@ use vol_language::source::Span;
 
 /// Tangents that differ by more than this are a corner, degrees.
 const CORNER: f64 = 1.0;
+
+/// Runs of t that may cost every sample some operations each.
+const FEW_RUNS: usize = 16;
 
 /// Ends farther apart than this share of the pieces that meet there are a gap.
 const GAP: f64 = 1e-6;
@@ -35,18 +38,60 @@ pub(crate) fn path(lowerer: &mut Lowerer<'_>, curves: &[Rc<CurveValue>], span: S
         lowerer.report(diagnostic);
     }
     let share = 1.0 / curves.len() as f64;
-    let runs = curves.iter().flat_map(|curve| &curve.runs);
     let closed = match jump(&lowerer.graph, last, first) {
         Some(Jump::Gap(_)) => false,
         Some(Jump::Corner(_)) => true,
         // No jump, or not known: then only the very same point will do.
         None => end(last)[2] == start(first)[0] || known_points(&lowerer.graph, end(last)).is_some(),
     };
+    let curves = evened(&mut lowerer.graph, curves);
+    let runs = curves.iter().flat_map(|curve| &curve.runs);
     Ok(CurveValue {
         segments: curves.iter().flat_map(|curve| curve.segments.iter().copied()).collect(),
         runs: runs.map(|run| Run { share: run.share * share, ..*run }).collect(),
         closed,
     })
+}
+
+/// Curves with the same number of pieces each, if they are many and their numbers differ: then t runs evenly
+/// from piece to piece, and need not be put together from a run for each curve at every point.
+fn evened(graph: &mut Graph, curves: &[Rc<CurveValue>]) -> Vec<Rc<CurveValue>> {
+    let common = curves.iter().map(|curve| curve.segments.len()).fold(1, least_common_multiple);
+    let even = curves.iter().all(|curve| curve.runs.len() == 1);
+    if curves.len() <= FEW_RUNS || !even || common > MOST_PIECES / curves.len() {
+        return curves.to_vec();
+    }
+    let divided = curves.iter().map(|curve| {
+        let parts = common / curve.segments.len();
+        let segments = curve.segments.iter().flat_map(|segment| divided(graph, segment, parts)).collect();
+        Rc::new(CurveValue::even(segments, curve.closed))
+    });
+    divided.collect()
+}
+
+fn least_common_multiple(a: usize, b: usize) -> usize {
+    let (mut divisor, mut rest) = (a, b);
+    while rest > 0 {
+        (divisor, rest) = (rest, divisor % rest);
+    }
+    (a / divisor.max(1)).saturating_mul(b)
+}
+
+/// A quadratic cut at even parameters, by its polar form.
+fn divided(graph: &mut Graph, segment: &[Point; 3], parts: usize) -> Vec<[Point; 3]> {
+    if parts == 1 {
+        return vec![*segment];
+    }
+    let [a, b, c] = *segment;
+    let mut polar = |u: f64, v: f64| {
+        let (iu, iv) = (1.0 - u, 1.0 - v);
+        combination(graph, &[(iu * iv, a), (u * iv + iu * v, b), (u * v, c)])
+    };
+    let mut part = |i: usize| {
+        let [from, to] = [i, i + 1].map(|end| end as f64 / parts as f64);
+        [polar(from, from), polar(from, to), polar(to, to)]
+    };
+    (0..parts).map(&mut part).collect()
 }
 
 /// How two curves fail to join.

@@ -2,6 +2,7 @@
 
 use super::super::cloud::Cloud;
 use super::super::optics::{self, Phase};
+use super::super::tube::Tube;
 use super::super::value::{LocalPoint, Value};
 use super::super::{Lowered, Lowerer};
 use super::{Plan, add_field, solid};
@@ -9,6 +10,7 @@ use crate::ir::ValueId;
 use crate::ops::Op;
 use crate::program::{Field, Lighting, Medium};
 use std::rc::Rc;
+use vol_language::diag::Diagnostic;
 use vol_language::hir::Block;
 use vol_language::source::Span;
 
@@ -16,7 +18,8 @@ use vol_language::source::Span;
 pub(super) fn medium(lowerer: &mut Lowerer<'_>, block: &Block, plan: &mut Plan) -> Lowered<()> {
     let (region, span) = solid(lowerer, block, "region")?;
     let point = Rc::new(LocalPoint { world: lowerer.position(), region });
-    let matter = matter(lowerer, block, &point)?;
+    let mut matter = matter(lowerer, block, &point)?;
+    add_up(lowerer, block, &point, span, &mut matter)?;
     if matter.is_empty(lowerer) {
         plan.report.push(format!("medium `{}` neither scatters, absorbs nor emits", block.name));
     }
@@ -38,6 +41,9 @@ pub(super) fn cloud(
     plan: &mut Plan,
 ) -> Lowered<()> {
     let (region, span) = solid(lowerer, block, "shape")?;
+    if region.has_tube(&Tube::adds_up) {
+        return Err(adds_up_elsewhere(span));
+    }
     let point = Rc::new(LocalPoint { world: lowerer.position(), region });
     let distance = point.region.distance(lowerer, point.world)?;
     let amount = cloud.amount(lowerer, &point, block.span)?;
@@ -60,6 +66,7 @@ pub(super) fn cloud(
         scatter: color,
         scattering: [zero; 3],
         extinction: [density; 3],
+        extinction_alone: [density; 3],
         emission: color.map(|c| {
             let c = graph.max(c, zero);
             graph.mul(glow, c)
@@ -93,7 +100,7 @@ fn fill(
         name: name.clone(),
         region: lowerer.function(&format!("region:{name}"), 3, &[distance]),
         interior: lowerer.function(&format!("interior:{name}"), 3, &interior),
-        extinction: lowerer.function(&format!("extinction:{name}"), 3, &matter.extinction),
+        extinction: lowerer.function(&format!("extinction:{name}"), 3, &matter.extinction_alone),
         phase: lowerer.function(&format!("phase:{name}"), 2, &[phase]),
         lighting,
         extent: region.extent(lowerer, span)?,
@@ -118,6 +125,8 @@ struct Matter {
     scatter: [ValueId; 3],
     scattering: [ValueId; 3],
     extinction: [ValueId; 3],
+    /// The same where nothing else is asked for: shadow rays.
+    extinction_alone: [ValueId; 3],
     emission: [ValueId; 3],
 }
 
@@ -144,13 +153,51 @@ fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> L
     let emit = coefficient("emit", 0.0)?;
     let graph = &mut lowerer.graph;
     let total = [0, 1, 2].map(|i| graph.add(scatter[i], absorb[i]));
+    let extinction = total.map(|c| graph.mul(density, c));
     Ok(Matter {
         density,
         scatter,
         scattering: scatter.map(|c| graph.mul(density, c)),
-        extinction: total.map(|c| graph.mul(density, c)),
+        extinction,
+        extinction_alone: extinction,
         emission: emit.map(|c| graph.mul(density, c)),
     })
+}
+
+/// Makes the quantities of a medium in a tube whose parts add up their sums over all feet; the colour
+/// stays that at the foot nearest for its radius.
+fn add_up(
+    lowerer: &mut Lowerer<'_>,
+    block: &Block,
+    point: &Rc<LocalPoint>,
+    span: Span,
+    matter: &mut Matter,
+) -> Lowered<()> {
+    let Some((tube, p)) = point.region.adding_up(&mut lowerer.graph, point.world) else {
+        return if point.region.has_tube(&Tube::adds_up) { Err(adds_up_elsewhere(span)) } else { Ok(()) };
+    };
+    // A loop of its own for each use: loops carry all of their sums.
+    let sums = tube.sum_by_feet(lowerer, p, 9, span, |lowerer| {
+        let matter = self::matter(lowerer, block, point)?;
+        Ok([matter.scattering, matter.extinction, matter.emission].concat())
+    })?;
+    let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
+    (matter.scattering, matter.extinction, matter.emission) = (three(0), three(3), three(6));
+    let alone = tube.sum_by_feet(lowerer, p, 3, span, |lowerer| {
+        Ok(self::matter(lowerer, block, point)?.extinction.to_vec())
+    })?;
+    matter.extinction_alone = [alone[0], alone[1], alone[2]];
+    let density =
+        tube.sum_by_feet(lowerer, p, 1, span, |lowerer| Ok(vec![self::matter(lowerer, block, point)?.density]))?;
+    matter.density = density[0];
+    Ok(())
+}
+
+fn adds_up_elsewhere(span: Span) -> Box<Diagnostic> {
+    let message = "a tube with `overlap: sum` is the whole region of a medium, moved or not";
+    let label = "here it is a part of another shape";
+    let help = "write `overlap: min_ratio`, or give each part a medium of its own: media add up";
+    Box::new(Diagnostic::error("E0407", message, span, label).with_help(help))
 }
 
 /// The density, divided by the stretch of volume where a key of the medium or its tube asks for that:

@@ -5,8 +5,8 @@
 //! search vectorise.
 
 use super::{LANES, Operands, Out};
-use crate::math::curve::{self, CurvePoint, Search};
-use vol_compiler::curve::Piece;
+use crate::math::curve::{self, CurvePoint, Search, feet, nodes};
+use vol_compiler::curve::{Node, Piece};
 use vol_compiler::ops::MAX_RESULTS;
 
 /// Points and searches of all lanes, one array per field.
@@ -90,14 +90,99 @@ fn values(found: &CurvePoint) -> [f32; MAX_RESULTS] {
     [t, arc_length, curve_length, x, y, distance, overshoot, stretch]
 }
 
-/// [`curve::closest`] in each lane.
-pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usize {
+/// Squared distances to the winners are at most these, in each lane.
+struct Bounds([f32; LANES]);
+
+/// So many leaves are searched for all lanes, each found by one of them; further ones by their lane alone.
+const SHARED_LEAVES: usize = 4;
+
+impl Bounds {
+    /// From the leaf that each point is likely to be near: neighbouring points share it.
+    fn new(searches: &Searches, n: usize, pieces: &[Piece], nodes: &[Node]) -> Self {
+        let mut bounds = Self([f32::MAX; LANES]);
+        let (mut shared, mut last) = (0, usize::MAX);
+        for lane in 0..n.min(LANES) {
+            let leaf = nodes::likely_leaf(searches.point(lane), nodes);
+            if leaf == last {
+                continue;
+            }
+            if shared < SHARED_LEAVES {
+                (shared, last) = (shared + 1, leaf);
+                for piece in &pieces[nodes[leaf].first as usize..nodes[leaf].end as usize] {
+                    bounds.lower_by_foot(searches, n, *piece);
+                }
+            } else {
+                let nearest = nodes::nearest_in(searches.point(lane), pieces, &nodes[leaf]);
+                bounds.0[lane] = bounds.0[lane].min(nodes::bound_of(nearest));
+            }
+        }
+        bounds
+    }
+
+    /// Out of line for the same reason as [`Searches::visit`].
+    #[inline(never)]
+    fn lower_by_foot(&mut self, searches: &Searches, n: usize, piece: Piece) {
+        for lane in 0..n.min(LANES) {
+            let found = nodes::bound_of(curve::foot(searches.point(lane), &piece).dist_sq);
+            self.0[lane] = if found < self.0[lane] { found } else { self.0[lane] };
+        }
+    }
+
+    /// Lowers them to what has been found.
+    #[inline(never)]
+    fn lower(&mut self, searches: &Searches, n: usize) {
+        for lane in 0..n.min(LANES) {
+            let found = nodes::bound_of(searches.dist_sq[lane]);
+            self.0[lane] = if found < self.0[lane] { found } else { self.0[lane] };
+        }
+    }
+
+    /// Whether some lane's winner may be in a box.
+    #[inline(never)]
+    fn reach(&self, searches: &Searches, n: usize, node: &Node) -> bool {
+        let mut near = [0u32; LANES];
+        for (lane, near) in near.iter_mut().enumerate().take(n.min(LANES)) {
+            *near = u32::from(nodes::box_dist_sq(searches.point(lane), node) <= self.0[lane]);
+        }
+        near.iter().fold(0, |any, &near| any | near) != 0
+    }
+}
+
+/// [`nodes::search`] in each lane: a box is passed over where no lane wants it.
+fn search(x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     let n = x[0].len().min(LANES);
     let mut searches = Searches::new(x);
     // Visit the pieces along the curve.
-    for (index, piece) in (0u32..).zip(pieces) {
-        searches.visit(n, *piece, index);
+    if nodes.is_empty() {
+        for (index, piece) in (0u32..).zip(pieces) {
+            searches.visit(n, *piece, index);
+        }
+        return searches;
     }
+    // Pass over boxes that are farther than a foot.
+    let mut bounds = Bounds::new(&searches, n, pieces, nodes);
+    let mut at = 0;
+    while at < nodes.len() {
+        let node = &nodes[at];
+        if !bounds.reach(&searches, n, node) {
+            at = node.skip as usize;
+            continue;
+        }
+        if node.skip as usize == at + 1 {
+            for index in node.first..node.end {
+                searches.visit(n, pieces[index as usize], index);
+            }
+            bounds.lower(&searches, n);
+        }
+        at += 1;
+    }
+    searches
+}
+
+/// [`curve::closest`] in each lane.
+pub(super) fn closest(x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
+    let (n, pieces) = (x[0].len().min(LANES), parts.0);
+    let searches = search(x, parts);
     // Describe the foot on the winner.
     if (1..=FEW).contains(&pieces.len()) {
         let mut found = [[0.0; LANES]; MAX_RESULTS];
@@ -112,7 +197,7 @@ pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usiz
     for lane in 0..n {
         let found = match pieces.get(searches.piece[lane] as usize) {
             Some(piece) => curve::describe(searches.point(lane), piece, searches.t[lane]),
-            None => curve::closest(searches.point(lane), &[]),
+            None => curve::closest(searches.point(lane), &[], &[]),
         };
         for (out, value) in out.iter_mut().zip(values(&found)) {
             out.0[lane] = value;
@@ -122,19 +207,30 @@ pub(super) fn closest(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usiz
 }
 
 /// [`curve::closest_gradient`] in each lane: asked for at hits only, so it may be slower.
-pub(super) fn closest_gradient(x: &Operands<'_>, out: &mut Out, pieces: &[Piece]) -> usize {
-    let n = x[0].len().min(LANES);
-    let mut searches = Searches::new(x);
-    for (index, piece) in (0u32..).zip(pieces) {
-        searches.visit(n, *piece, index);
-    }
+pub(super) fn closest_gradient(x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
+    let (n, pieces) = (x[0].len().min(LANES), parts.0);
+    let searches = search(x, parts);
     for lane in 0..n {
         let found = match pieces.get(searches.piece[lane] as usize) {
             Some(piece) => curve::slopes(searches.point(lane), piece, searches.t[lane]),
-            None => curve::closest_gradient(searches.point(lane), &[]),
+            None => curve::closest_gradient(searches.point(lane), &[], &[]),
         };
         let ([dx, dy, dz], [tx, ty, tz]) = (found.direction, found.tangent);
         let values = [dx, dy, dz, tx, ty, tz, found.rate, found.slide];
+        for (out, value) in out.iter_mut().zip(values) {
+            out.0[lane] = value;
+        }
+    }
+    MAX_RESULTS
+}
+
+/// [`feet::next_foot`] in each lane, by itself: how far each has to look differs.
+pub(super) fn next_foot(x: &Operands<'_>, out: &mut Out, (pieces, nodes): (&[Piece], &[Node])) -> usize {
+    for lane in 0..x[0].len().min(LANES) {
+        let (point, ask) = ([x[0][lane], x[1][lane], x[2][lane]], [x[3][lane], x[4][lane], x[5][lane]]);
+        let found = feet::next_foot(point, ask, pieces, nodes);
+        let CurvePoint { t, arc_length, x, y, distance, overshoot, stretch, .. } = found.point;
+        let values = [found.next, t, arc_length, x, y, distance, overshoot, stretch];
         for (out, value) in out.iter_mut().zip(values) {
             out.0[lane] = value;
         }

@@ -1,5 +1,7 @@
 //! The f32 kernel against `vol_compiler::reference::curve` in f64.
 
+mod long;
+
 use super::*;
 use vol_compiler::curve::{Quadratic, prepare};
 use vol_compiler::reference::curve as reference;
@@ -109,7 +111,7 @@ fn point_at(segments: &[Quadratic], t: f64) -> [f64; 3] {
 }
 
 fn compare(p: [f32; 3], segments: &[Quadratic], worst: &mut Worst) {
-    let found = closest(p, &prepare(segments).pieces);
+    let found = closest(p, &prepare(segments).pieces, &[]);
     let Some(truth) = reference::closest(p.map(f64::from), segments) else { unreachable!("not empty") };
     let all = [found.t, found.arc_length, found.x, found.y, found.distance, found.overshoot, found.stretch];
     assert!(all.iter().all(|x| x.is_finite()), "{segments:?} {p:?} {found:?}");
@@ -133,23 +135,26 @@ fn compare(p: [f32; 3], segments: &[Quadratic], worst: &mut Worst) {
     worst.stretch = worst.stretch.max(stretch * span / scale);
 }
 
-/// Bounds on [`Worst`], in the order of its fields: twice what was measured or less.
+/// Bounds on [`Worst`], in the order of its fields; the distance as asked for, the others twice what was measured or less.
 fn assert_within(worst: &Worst, name: &str) {
-    assert!(worst.distance <= 4e-7, "{name}: {worst:?}");
+    assert!(worst.distance <= 2e-7, "{name}: {worst:?}");
     assert!(worst.arc <= 1e-6 && worst.frame <= 1e-6, "{name}: {worst:?}");
     assert!(worst.slide <= 1e-6, "{name}: {worst:?}");
     assert!(worst.overshoot <= 4e-7 && worst.stretch <= 2e-6, "{name}: {worst:?}");
 }
 
+/// `VOL_CURVES=100000` makes it 1e6 curves.
 #[test]
 fn agrees_with_f64() {
+    let wanted = std::env::var("VOL_CURVES").ok().and_then(|count| count.parse().ok());
     for (category, name) in CATEGORIES.iter().enumerate() {
         let mut dice = Dice(0x9E37_79B9_7F4A_7C15 ^ ((category as u64) << 32));
         let mut worst = Worst::default();
-        for _ in 0..2200 {
+        for _ in 0..wanted.unwrap_or(2200) {
             let (segment, p) = case(&mut dice, category);
             compare(p, &[segment], &mut worst);
         }
+        println!("{name}: {worst:?}");
         assert_within(&worst, name);
     }
 }
@@ -201,7 +206,7 @@ fn slopes_agree_with_f64() {
         let mut worst = (0f64, 0f64, 0f64);
         for _ in 0..1000 {
             let (segment, p) = case(&mut dice, category);
-            let found = closest_gradient(p, &prepare(&[segment]).pieces);
+            let found = closest_gradient(p, &prepare(&[segment]).pieces, &[]);
             let all = [found.direction, found.tangent].concat();
             assert!(
                 all.iter().chain([&found.rate, &found.slide]).all(|x| x.is_finite()),
@@ -240,13 +245,13 @@ fn slopes_agree_with_f64() {
 #[test]
 fn slopes_of_nothing_and_points() {
     let at = |q: [f64; 3]| Quadratic { a: q, b: q, c: q };
-    let point = closest_gradient([1.0, 2.0, 2.0], &prepare(&[at([1.0, 0.0, 2.0])]).pieces);
+    let point = closest_gradient([1.0, 2.0, 2.0], &prepare(&[at([1.0, 0.0, 2.0])]).pieces, &[]);
     assert_eq!((point.direction, point.rate, point.slide), ([0.0, 1.0, 0.0], 0.0, 0.0));
-    assert_eq!(closest_gradient([0.0; 3], &[]), STILL);
+    assert_eq!(closest_gradient([0.0; 3], &[], &[]), STILL);
     let line = prepare(&[Quadratic { a: [0.0; 3], b: [1.0, 0.0, 0.0], c: [2.0, 0.0, 0.0] }]).pieces;
-    let on = closest_gradient([1.0, 0.0, 0.0], &line);
+    let on = closest_gradient([1.0, 0.0, 0.0], &line, &[]);
     assert_eq!((on.direction, on.tangent, on.rate, on.slide), ([0.0; 3], [1.0, 0.0, 0.0], 0.5, 1.0));
-    assert_eq!(closest_gradient([3.0, 1.0, 0.0], &line).slide, 0.0);
+    assert_eq!(closest_gradient([3.0, 1.0, 0.0], &line, &[]).slide, 0.0);
 }
 
 #[test]
@@ -295,15 +300,15 @@ fn frame_runs_without_jumps() {
 #[test]
 fn points_and_ends() {
     let at = |q: [f64; 3]| Quadratic { a: q, b: q, c: q };
-    let point = closest([1.0, 2.0, 5.0], &prepare(&[at([1.0, 0.0, 2.0])]).pieces);
+    let point = closest([1.0, 2.0, 5.0], &prepare(&[at([1.0, 0.0, 2.0])]).pieces, &[]);
     assert_eq!([point.x, point.y, point.overshoot, point.stretch], [0.0, 2.0, 3.0, 1.0]);
     assert_eq!([point.t, point.arc_length, point.curve_length], [0.0; 3]);
     let line = prepare(&[Quadratic { a: [0.0; 3], b: [1.0, 0.0, 0.0], c: [2.0, 0.0, 0.0] }]).pieces;
-    let far = closest([5.0, 3.0, 0.0], &line);
+    let far = closest([5.0, 3.0, 0.0], &line, &[]);
     assert_eq!([far.overshoot, far.x, far.y, far.t, far.arc_length], [3.0, 3.0, 0.0, 1.0, 2.0]);
-    assert_eq!(closest([-2.0, 0.0, 0.0], &line).overshoot, 2.0);
-    assert_eq!(closest([1.0, 1.0, 0.0], &line).overshoot, 0.0);
-    assert_eq!(closest([1.0; 3], &[]).distance, 1e18);
+    assert_eq!(closest([-2.0, 0.0, 0.0], &line, &[]).overshoot, 2.0);
+    assert_eq!(closest([1.0, 1.0, 0.0], &line, &[]).overshoot, 0.0);
+    assert_eq!(closest([1.0; 3], &[], &[]).distance, 1e18);
 }
 
 #[test]
@@ -313,7 +318,7 @@ fn nothing_overflows() {
         let mut wild = || [(); 3].map(|()| dice.roll() * 10f64.powi((dice.unit() * 60.0) as i32 - 30));
         let segments =
             [Quadratic { a: wild(), b: wild(), c: wild() }, Quadratic { a: wild(), b: wild(), c: wild() }];
-        let point = closest(wild().map(|x| x as f32), &prepare(&segments).pieces);
+        let point = closest(wild().map(|x| x as f32), &prepare(&segments).pieces, &[]);
         let all =
             [point.t, point.arc_length, point.x, point.y, point.distance, point.overshoot, point.stretch];
         assert!(all.iter().all(|x| x.is_finite()), "{i}: {segments:?} {point:?}");

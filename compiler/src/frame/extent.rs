@@ -104,6 +104,10 @@ const SLOW: f64 = 1e-3;
 /// By how much of the radius an offset may be off the plane across the axis: rounding, generously.
 const OFF_PLANE: f64 = 1e-3;
 
+/// An end that goes less than this along a coordinate goes straight across it: over the farthest that
+/// rays go it moves by 4e-6.
+const SIDEWAYS: f64 = 1e-12;
+
 /// Rounding of a curve parameter, generously.
 const T_SLACK: f64 = 1e-6;
 
@@ -121,7 +125,10 @@ impl Space<'_> {
                 let measured = sizes.map(|index| self.tubes[index as usize]);
                 let safe = measured.is_none_or(|measured| measured.safe) && *caps != Caps::Open;
                 let solid = match caps {
-                    Caps::Open => exact(ALL),
+                    Caps::Open => {
+                        let cells = self.open_cells(*curve as usize, *radius);
+                        Solid { bounds: cells.iter().copied().fold(EMPTY, enclose), cells, ..exact(ALL) }
+                    }
                     Caps::Flat | Caps::Round | Caps::Joined => {
                         let cells = self.tube_cells(*curve as usize, *radius, *caps);
                         Solid { cells, ..exact(self.tube(*curve as usize, *radius)) }
@@ -261,6 +268,40 @@ impl Space<'_> {
         }
         let run = boxes.len().div_ceil(MOST_CELLS).max(1);
         boxes.chunks(run).map(|run| run.iter().copied().fold(EMPTY, enclose)).collect()
+    }
+
+    /// Boxes around a tube with open ends: those along its axis, and one around each cylinder that goes on
+    /// for ever, endless only the way that it goes. All of space if the axis has a kink, where offsets across
+    /// the axis say little.
+    fn open_cells(&self, curve: usize, radius: FunctionId) -> Vec<Box3> {
+        let segments = &self.curves[curve];
+        let smooth = |place: usize| joins(segments, place, 0.0);
+        let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return vec![ALL] };
+        let ends = [(first.a, -velocity(first, 0.0), 0.0), (last.c, velocity(last, 1.0), 1.0)];
+        let stands = ends.iter().any(|(_, direction, _)| !(direction.length() > 0.0));
+        if stands || !(1..segments.len()).all(smooth) {
+            return vec![ALL];
+        }
+        let mut cells = self.tube_cells(curve, radius, Caps::Flat);
+        while cells.len() > MOST_CELLS - ends.len() {
+            let (Some(a), Some(b)) = (cells.pop(), cells.pop()) else { break };
+            cells.push(enclose(a, b));
+        }
+        let arc_length = Interval::new(0.0, self.tables[curve].length);
+        for (at, direction, t) in ends {
+            let t = Interval::new(f64::max(t - T_SLACK, 0.0), f64::min(t + T_SLACK, 1.0));
+            let largest = self.interval(radius, &[t, arc_length])[0].hi.max(LEAST_RADIUS);
+            let along = direction.normalize();
+            let mut end = Box3 { lo: at, hi: at };
+            for i in 0..3 {
+                let reach = largest * ((1.0 - along[i] * along[i]).max(0.0).sqrt() + OFF_PLANE);
+                let (back, forth) = (along[i] < -SIDEWAYS, along[i] > SIDEWAYS);
+                end.lo[i] = if back { f64::NEG_INFINITY } else { at[i] - reach };
+                end.hi[i] = if forth { f64::INFINITY } else { at[i] + reach };
+            }
+            cells.push(end);
+        }
+        cells
     }
 
     pub(super) fn interval(&self, function: FunctionId, inputs: &[Interval]) -> Vec<Interval> {

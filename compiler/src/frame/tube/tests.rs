@@ -372,3 +372,34 @@ fn grown_tubes_are_inside_their_cells() {
         assert!(skipped == 0 && inside >= 10, "{}: {skipped} of {inside}", case.tube);
     }
 }
+
+#[test]
+fn open_tubes_are_inside_their_cells() {
+    let mut seed = 12;
+    for (tube, ends) in [
+        ("line((0, -1, 0), (0, 1, 0)), radius: 0.3", [false, true, false]),
+        ("bezier((-1, 0, 0), (0, 1, 0.4), (1, 0, 0)), radius: t => 0.1 + 0.3 * t", [true, true, true]),
+        ("bezier((-1, 0, 0), (0, 1, 0), (1, 0, 0)), radius: 0.2", [true, true, false]),
+        ("path([line((-1, 0, 0), (0, 0, 0)), line((0, 0, 0), (-1, 0.1, 0))]), radius: 0.2", [true; 3]),
+    ] {
+        let scene = compile(&format!("medium m {{ region: tube({tube}, caps: open) }}"));
+        let medium = &scene.frame().media[0];
+        assert!(medium.cells.len() <= 64);
+        let endless = |i: usize| !(medium.bounds.lo[i].is_finite() && medium.bounds.hi[i].is_finite());
+        assert_eq!([0, 1, 2].map(endless), ends, "{tube}");
+        let mut inside = 0;
+        for i in 0..3000 {
+            let p = random_point(&mut seed) * if i % 2 == 0 { 1.5 } else { 30.0 };
+            // Most of the far ones near the axis of an end.
+            let p = if i % 4 == 1 { p * DVec3::new(0.02, 1.0, 0.02) } else { p };
+            if scene.field("distance:m", p)[0] < 0.0 {
+                let within = |c: &crate::frame::Aabb| {
+                    (0..3).all(|i| f64::from(c.lo[i]) <= p[i] && p[i] <= f64::from(c.hi[i]))
+                };
+                assert!(medium.cells.iter().any(within), "{tube} {p}");
+                inside += 1;
+            }
+        }
+        assert!(inside > 20, "{tube}: {inside}");
+    }
+}

@@ -62,7 +62,9 @@ fn errors(x: [Bounded; 6], segments: &[Quadratic]) -> Results<f64> {
     let lost = [f64::INFINITY; MAX_RESULTS];
     let off = x[..3].iter().map(|x| x.error * x.error).sum::<f64>().sqrt();
     // Written so that NaN is refused.
-    if !x[..3].iter().all(|x| x.value.abs() + x.error <= REACH) || x[3].error + x[5].error > 0.0 {
+    let place = x[..3].iter().all(|x| x.value.abs() + x.error <= REACH);
+    let known = x[3].error == 0.0 && (x[5].error == 0.0 || x[5].value.abs() > x[5].error);
+    if !place || !known {
         return lost;
     }
     let values = x.map(|x| x.value);

@@ -137,18 +137,48 @@ impl Bounds {
         }
     }
 
-    /// Whether some lane's winner may be in a box.
+    /// In which lanes the winner may be in a box, and in how many: 0 or 1 each.
     #[inline(never)]
-    fn reach(&self, searches: &Searches, n: usize, node: &Node) -> bool {
-        let mut near = [0u32; LANES];
+    fn reach(&self, searches: &Searches, n: usize, node: &Node, near: &mut [u32; LANES]) -> usize {
         for (lane, near) in near.iter_mut().enumerate().take(n.min(LANES)) {
             *near = u32::from(nodes::box_dist_sq(searches.point(lane), node) <= self.0[lane]);
         }
-        near.iter().fold(0, |any, &near| any | near) != 0
+        near.iter().sum::<u32>() as usize
     }
 }
 
-/// [`nodes::search`] in each lane: a box is passed over where no lane wants it.
+impl Searches {
+    /// Visits the pieces of a leaf in the lanes that want it, side by side so that loops are as short as
+    /// they are few.
+    fn visit_leaf(&mut self, n: usize, near: &[u32; LANES], few: &mut Self, pieces: &[Piece], first: u32) {
+        let mut lanes = [0; LANES];
+        let mut count = 0;
+        for lane in (0..n.min(LANES)).filter(|&lane| near[lane] != 0) {
+            few.copy(count, self, lane);
+            lanes[count] = lane;
+            count += 1;
+        }
+        for (index, piece) in (first..).zip(pieces) {
+            few.visit(count, *piece, index);
+        }
+        for (at, &lane) in lanes[..count].iter().enumerate() {
+            self.copy(lane, few, at);
+        }
+    }
+
+    /// Takes over a lane of others.
+    fn copy(&mut self, to: usize, from: &Self, lane: usize) {
+        for (to_axis, from_axis) in self.point.iter_mut().zip(&from.point) {
+            to_axis[to] = from_axis[lane];
+        }
+        self.dist_sq[to] = from.dist_sq[lane];
+        self.t[to] = from.t[lane];
+        self.piece[to] = from.piece[lane];
+        self.left_at_last[to] = from.left_at_last[lane];
+    }
+}
+
+/// [`nodes::search`] in each lane: a box is entered if some lane wants it, but its pieces are visited in those lanes only.
 fn search(x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     let n = x[0].len().min(LANES);
     let mut searches = Searches::new(x);
@@ -161,17 +191,16 @@ fn search(x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     }
     // Pass over boxes that are farther than a foot.
     let mut bounds = Bounds::new(&searches, n, pieces, nodes);
-    let mut at = 0;
+    let (mut few, mut near, mut at) = (Searches::new(x), [0; LANES], 0);
     while at < nodes.len() {
         let node = &nodes[at];
-        if !bounds.reach(&searches, n, node) {
+        if bounds.reach(&searches, n, node, &mut near) == 0 {
             at = node.skip as usize;
             continue;
         }
         if node.skip as usize == at + 1 {
-            for index in node.first..node.end {
-                searches.visit(n, pieces[index as usize], index);
-            }
+            let leaf = &pieces[node.first as usize..node.end as usize];
+            searches.visit_leaf(n, &near, &mut few, leaf, node.first);
             bounds.lower(&searches, n);
         }
         at += 1;

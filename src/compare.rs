@@ -131,7 +131,7 @@ pub const PRECISION: ImageClass =
 pub fn reference_picture(program: &Program, frame: &Frame, job: &Job) -> Image {
     let pixel = |values: &[f64; 7]| {
         let [r, g, b, red, green, blue, depth] = values.map(|value| value as f32);
-        Pixel { color: [r, g, b], transmittance: [red, green, blue], depth }
+        Pixel { color: [r, g, b], transmittance: [red, green, blue], depth, error: 0.0 }
     };
     let pixels = vol_runtime_cpu::render_reference(program, frame, job).iter().map(pixel).collect();
     Image { width: job.size[0], height: job.size[1], pixels }

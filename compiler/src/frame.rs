@@ -145,8 +145,22 @@ pub struct Job {
     pub step: f32,
     /// Distance between samples along shadow rays through media; positive.
     pub shadow_step: f32,
+    /// How samples of media become an integral.
+    pub quadrature: Quadrature,
     /// Rays per pixel.
     pub sampling: Sampling,
+}
+
+/// How samples of media along a ray become an integral. Both converge to the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quadrature {
+    /// Each sample stands for the stretch around it. Second order; cheap, and best while the step is not
+    /// much shorter than the finest detail.
+    #[default]
+    Midpoint,
+    /// Between two samples density and light change steadily; where the density is cut off at 0 and where
+    /// the region ends is found between them. Third order where density ends at 0, second at hard walls.
+    Corrected,
 }
 
 /// How many rays a pixel is the mean of. Where they go and when a pixel has enough of them is told
@@ -194,6 +208,22 @@ pub struct Pixel {
     /// Distance along the viewing axis of the first surface in the pixel's centre; infinite where there
     /// is none. A mean of distances would lie where nothing is.
     pub depth: f32,
+    /// How far the colour may be off for want of samples of media, rms over the channels. Of a single pixel
+    /// it says little; over a picture its rms is the estimated error, once
+    /// [`Image::scale_errors`] has been told that.
+    pub error: f32,
+}
+
+impl Image {
+    /// Scales the errors of the pixels, which runtimes give in a unit of their own, so that their rms over
+    /// the picture is `estimate` times that of the colours.
+    pub fn scale_errors(&mut self, estimate: f32) {
+        let mean = |square: &dyn Fn(&Pixel) -> f64| self.pixels.iter().map(square).sum::<f64>();
+        let errors = mean(&|pixel| f64::from(pixel.error).powi(2));
+        let colors = mean(&|pixel| pixel.color.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>() / 3.0);
+        let factor = if errors > 0.0 { f64::from(estimate) * (colors / errors).sqrt() } else { 0.0 };
+        self.pixels.iter_mut().for_each(|pixel| pixel.error = (factor * f64::from(pixel.error)) as f32);
+    }
 }
 
 /// How much was computed for a picture.

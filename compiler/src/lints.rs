@@ -48,7 +48,8 @@ fn empty(medium: &Medium, interior: &Function, bounds: Aabb, frame: &Frame) -> O
     let holds_something = (0..CELLS.pow(3)).any(|cell| {
         let results = reference::interval(interior, &cell_of(bounds, cell), &frame.uniforms, &frame.curves);
         // A bound that is no number says nothing.
-        results.iter().any(|result| result.hi > 0.0 || result.hi.is_nan())
+        let some = |result: &Interval| result.hi > 0.0 || result.hi.is_nan();
+        some(&results[0]) && results[1..].iter().any(some)
     });
     if holds_something {
         return None;

@@ -9,13 +9,14 @@
 //! | [`cse`] | `sqrt %0` twice | once |
 //! | [`dce`] | values that no output needs | gone |
 //!
-//! [`gradient`] and [`enclose`] are no simplifications but make new values; lowering calls them.
+//! [`gradient`], [`enclose`] and [`unclip`] are no simplifications but make new values; lowering calls them.
 
 pub mod cse;
 pub mod dce;
 pub(crate) mod enclose;
 pub mod fold;
 pub mod gradient;
+pub(crate) mod unclip;
 
 use crate::ir::{Function, Inst, Module, verify};
 use std::sync::Arc;

@@ -169,10 +169,12 @@ pub struct Medium {
     /// Position to signed distance of the region: 3 inputs, 1 output, negative inside. Along a
     /// ray it is used to find where the ray crosses the wall between two samples.
     pub region: FunctionId,
-    /// Position inside the region to scattering, extinction and emission per unit length (density
-    /// already in them, never negative): 3 inputs, 9 outputs, rgb each.
+    /// Position inside the region to density, and to scattering, extinction and emission per unit length
+    /// and unit of density: 3 inputs, 10 outputs, rgb of the last three, which are never negative. There is
+    /// nothing where the density is negative; where an author cut it off at 0 it goes on below, and along a
+    /// ray that tells where it ends between two samples.
     pub interior: FunctionId,
-    /// Position inside the region to extinction alone: 3 inputs, 3 outputs; for shadows.
+    /// Position inside the region to density and extinction as above: 3 inputs, 4 outputs; for shadows.
     pub extinction: FunctionId,
     /// Phase function: inputs `1 - cos` and `1 + cos` of the angle between the directions of the
     /// light before and after scattering; output per steradian, integral over the sphere 1.

@@ -7,10 +7,11 @@
 //! 2. `surface`: steps to the first surface as long as `stride` allows, false position onto it, its normal.
 //! 3. `shade`: the surface's own light and the lights that reach it, each through `shadow`, those with a
 //!    size through `penumbra`; `occlusion` by surfaces around.
-//! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray.
+//! 4. `medium`: absorption, emission and single scattering at the nodes of one `comb` per ray, or between
+//!    them: `corrected`, by `panel`; `scatter` lights the nodes.
 //! 5. `film`: `color = L + T * (surface or background)`, tiles, threads; `sampling` takes the mean.
 //!
-//! `pilot` chooses the comb's step.
+//! `pilot` chooses the comb's step and which of the two, after a `survey`.
 //!
 //! Two further ways through the media, for comparison and on the CPU only, are behind `method`: `fixed_step`
 //! is the plain marcher of the literature, `monte_carlo` an unbiased oracle that shares nothing with the comb.
@@ -21,6 +22,7 @@
 
 mod camera;
 mod comb;
+mod corrected;
 mod fields;
 mod film;
 mod fixed_step;
@@ -30,15 +32,18 @@ mod medium;
 mod method;
 mod monte_carlo;
 mod occlusion;
+mod panel;
 mod penumbra;
 mod pilot;
 mod random;
 mod sampling;
+mod scatter;
 mod scene;
 mod shade;
 mod shadow;
 mod stride;
 mod surface;
+mod survey;
 #[cfg(test)]
 mod tests;
 mod tube_axis;
@@ -149,6 +154,7 @@ fn pixel(radiance: Radiance<f32>) -> Pixel {
         color: radiance.color,
         transmittance: radiance.transmittance,
         depth: radiance.depth.unwrap_or(f32::INFINITY),
+        error: radiance.doubt,
     }
 }
 

@@ -133,14 +133,14 @@ fn compare_pictures(
     let choice = vol_runtime_cpu::choose_step(program, &frame, size, MAX_ERROR);
     let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
     let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
-    let job = Job { size, step: choice.step, shadow_step: choice.shadow_step, sampling };
+    let job = choice.job(size, sampling);
     let pair = compare::images(&render(cpu, &frame, &job)?, &render(gpu, &frame, &job)?, GPU_IMAGE);
     // Rounding shows with few samples as well as with many, and the reference is slow.
     let small = at_most(size, REFERENCE_SIDE);
     let frame = prepared.frame(small)?;
     let coarse = REFERENCE_COARSENESS;
     let (step, shadow_step) = (coarse * choice.step, coarse * choice.shadow_step);
-    let job = Job { size: small, step, shadow_step, sampling };
+    let job = Job { size: small, step, shadow_step, ..job };
     let reference = compare::reference_picture(program, &frame, &job);
     let against =
         |device| Ok::<_, Failure>(compare::images(&render(device, &frame, &job)?, &reference, PRECISION));

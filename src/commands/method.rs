@@ -2,7 +2,7 @@
 
 use vol::failure::Failure;
 use vol::session::{Moment, Session};
-use vol_compiler::frame::{Frame, Job, Sampling};
+use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 use vol_runtime_cpu::{Method, TubeBounds};
 
@@ -103,15 +103,20 @@ pub(super) fn plan(
     sampling: Sampling,
 ) -> Plan {
     let seed = arguments.seed;
-    let job = |step, shadow_step| Job { size, step, shadow_step, sampling };
+    let job = |step, shadow_step| {
+        let quadrature = Quadrature::Midpoint;
+        Job { size, step, shadow_step, quadrature, sampling }
+    };
     match arguments.integrator {
         Integrator::Comb => {
             let max_error = arguments.max_error.unwrap_or(MAX_ERROR);
             let scale = arguments.step_scale.unwrap_or(1.0);
             let choice = vol_runtime_cpu::choose_step(program, frame, size, max_error);
+            let chosen = choice.job(size, sampling);
+            let (step, shadow_step) = (scale * chosen.step, scale * chosen.shadow_step);
             Plan {
                 method: Method::Comb,
-                job: job(scale * choice.step, scale * choice.shadow_step),
+                job: Job { step, shadow_step, ..chosen },
                 has_steps: true,
                 estimate: Some(choice.estimate),
             }

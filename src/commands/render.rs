@@ -161,10 +161,13 @@ impl Pictures<'_> {
         // Compute the picture.
         let before = self.pixels * *frames;
         let progress = |done| self.progress.at(before + done);
-        let rendered = timed(&mut phases.render, || {
+        let mut rendered = timed(&mut phases.render, || {
             self.renderer.render_by(plan.method, &frame, &plan.job, &progress, &CANCELLED)
         })?;
         super::stop_if_cancelled()?;
+        if let Some(estimate) = plan.estimate {
+            rendered.image.scale_errors(estimate);
+        }
         timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
         self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
         self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);

@@ -9,7 +9,8 @@ fn bounded(value: f64, error: f64) -> Bounded {
 }
 
 fn picture() -> Image {
-    let pixel = |i: u8| Pixel { color: [f32::from(i) / 50.0; 3], transmittance: [0.5; 3], depth: 2.0 };
+    let pixel =
+        |i: u8| Pixel { color: [f32::from(i) / 50.0; 3], transmittance: [0.5; 3], depth: 2.0, error: 0.0 };
     Image { width: 40, height: 50, pixels: (0..2000_u16).map(|i| pixel((i % 100) as u8)).collect() }
 }
 
@@ -86,7 +87,7 @@ fn many_pixels_a_little_off_fail() {
 #[test]
 fn outlines_may_flip_here_and_there() {
     let mut other = picture();
-    other.pixels[0] = Pixel { color: [0.9; 3], transmittance: [1.0; 3], depth: f32::INFINITY };
+    other.pixels[0] = Pixel { color: [0.9; 3], transmittance: [1.0; 3], depth: f32::INFINITY, error: 0.0 };
     let report = images(&picture(), &other, GPU_IMAGE);
     assert!(report.passes(), "{report:?}");
     assert!(report.max > 0.5);
@@ -99,7 +100,8 @@ fn outlines_may_flip_here_and_there() {
 #[test]
 fn what_is_no_number_fails_even_on_an_outline() {
     let mut other = picture();
-    other.pixels[0] = Pixel { color: [f32::NAN; 3], transmittance: [1.0; 3], depth: f32::INFINITY };
+    other.pixels[0] =
+        Pixel { color: [f32::NAN; 3], transmittance: [1.0; 3], depth: f32::INFINITY, error: 0.0 };
     assert!(!images(&picture(), &other, GPU_IMAGE).passes());
     // NaN in both is not agreement.
     assert!(!images(&other, &other, EXACT).passes());

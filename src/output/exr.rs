@@ -6,9 +6,14 @@
 //! | `A`                        | 1 − mean transmittance                                         |
 //! | `Z`                        | distance of the first surface along the viewing axis, or inf   |
 //! | `Transmittance.R` `.G` `.B`| fraction of the background's light that arrives                |
+//! | `Error.Estimate`           | how far `RGB` may be off for want of samples of media          |
 //!
 //! To put another background behind the picture, subtract `Transmittance` times the scene's own
 //! background from `RGB` and add `Transmittance` times the other.
+//!
+//! `Error.Estimate` is an rms over the three channels. Its rms over the picture is the estimate that `--stats`
+//! reports, times the rms of the radiance: that is safe. The number of one pixel tells where errors are likely,
+//! and may be several times too large or too small.
 
 use std::io;
 use std::path::Path;
@@ -37,6 +42,7 @@ pub fn write(picture: &Image, out: &mut dyn Sink) -> io::Result<()> {
         .with_channel::<f32>("Transmittance.R")
         .with_channel::<f32>("Transmittance.G")
         .with_channel::<f32>("Transmittance.B")
+        .with_channel::<f32>("Error.Estimate")
         .with_pixel_fn(|Vec2(x, y)| values(&picture.pixels[y * size.0 + x]));
     let attributes = LayerAttributes { software_name: Some("vol".into()), ..LayerAttributes::default() };
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
@@ -98,12 +104,12 @@ pub fn read(path: &Path) -> Result<Colors, Failure> {
     Ok(Colors { size: [size.0 as u32, size.1 as u32], pixels })
 }
 
-type Values = (f32, f32, f32, f32, f32, f32, f32, f32);
+type Values = (f32, f32, f32, f32, f32, f32, f32, f32, f32);
 
 fn values(pixel: &Pixel) -> Values {
     let [r, g, b] = pixel.color;
     let [tr, tg, tb] = pixel.transmittance;
-    (r, g, b, 1.0 - (tr + tg + tb) / 3.0, pixel.depth, tr, tg, tb)
+    (r, g, b, 1.0 - (tr + tg + tb) / 3.0, pixel.depth, tr, tg, tb, pixel.error)
 }
 
 #[cfg(test)]
@@ -131,6 +137,7 @@ mod tests {
             color: [i, 2.0 * i, 3.0],
             transmittance: [0.25, 0.5, 0.75],
             depth: if i > 2.0 { f32::INFINITY } else { i },
+            error: 0.125 * i,
         };
         let picture = Image { width: 3, height: 2, pixels: (0..6_u8).map(|i| pixel(i.into())).collect() };
         let mut file = Cursor::new(Vec::new());
@@ -149,13 +156,24 @@ mod tests {
             })
             .collect();
         let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
-        let expected = ["A", "B", "G", "R", "Transmittance.B", "Transmittance.G", "Transmittance.R", "Z"];
+        let expected = [
+            "A",
+            "B",
+            "Error.Estimate",
+            "G",
+            "R",
+            "Transmittance.B",
+            "Transmittance.G",
+            "Transmittance.R",
+            "Z",
+        ];
         assert_eq!(names, expected);
-        assert_eq!(found[3].1, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-        assert_eq!(found[2].1[5], 10.0);
+        assert_eq!(found[4].1, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(found[3].1[5], 10.0);
         assert_eq!(found[0].1, [0.5; 6]);
-        assert_eq!(found[4].1, [0.75; 6]);
-        assert_eq!(found[7].1[2], 2.0);
-        assert_eq!(found[7].1[3], f32::INFINITY);
+        assert_eq!(found[2].1[5], 0.625);
+        assert_eq!(found[5].1, [0.75; 6]);
+        assert_eq!(found[8].1[2], 2.0);
+        assert_eq!(found[8].1[3], f32::INFINITY);
     }
 }

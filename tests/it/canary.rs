@@ -4,7 +4,7 @@ use crate::support::{Random, compile, ensure, examples, frame, point, render};
 use libtest_mimic::{Failed, Trial};
 use vol::compare;
 use vol_compiler::error_bound::Bounded;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 use vol_compiler::ir::{Inst, Number};
 
 /// The trials of this file.
@@ -73,7 +73,13 @@ fn ball_picture() -> Result<Image, Failed> {
     render(
         &program,
         &frame,
-        &Job { size: [24, 24], step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE },
+        &Job {
+            size: [24, 24],
+            step: 1.0,
+            shadow_step: 1.0,
+            quadrature: Quadrature::Midpoint,
+            sampling: Sampling::CENTRE,
+        },
         1,
     )
 }

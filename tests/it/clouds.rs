@@ -2,7 +2,7 @@
 
 use crate::support::{Body, Draw, compile, ensure, frame, on_both};
 use libtest_mimic::Failed;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<libtest_mimic::Trial> {
@@ -24,7 +24,11 @@ const VIEW: &str =
 fn picture(draw: &Draw<'_>, text: &str, size: [u32; 2], step: f32) -> Result<Image, Failed> {
     let program = compile("test.vol", text)?;
     let frame = frame(&program, 0.0, size)?;
-    draw(&program, &frame, &Job { size, step, shadow_step: 0.1, sampling: Sampling::CENTRE })
+    draw(
+        &program,
+        &frame,
+        &Job { size, step, shadow_step: 0.1, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE },
+    )
 }
 
 /// Two scenes look alike, and not everywhere the same.

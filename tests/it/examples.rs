@@ -5,7 +5,7 @@ use crate::support::{compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::compare;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// A small picture.
@@ -15,7 +15,13 @@ const SIZE: [u32; 2] = [48, 27];
 const REFERENCE_SIZE: [u32; 2] = [16, 9];
 
 /// A coarse comb: agreement does not need accuracy.
-const JOB: Job = Job { size: SIZE, step: 0.05, shadow_step: 0.1, sampling: Sampling::CENTRE };
+const JOB: Job = Job {
+    size: SIZE,
+    step: 0.05,
+    shadow_step: 0.1,
+    quadrature: Quadrature::Midpoint,
+    sampling: Sampling::CENTRE,
+};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -63,23 +69,39 @@ pub(crate) fn has_content(image: &Image) -> bool {
 /// A small picture against that of the f64 reference.
 pub(crate) fn reference(program: &Program) -> Result<(), Failed> {
     let frame = frame(program, 0.4, REFERENCE_SIZE)?;
-    let job = Job { size: REFERENCE_SIZE, ..JOB };
-    let actual = render(program, &frame, &job, 2)?;
-    let expected = compare::reference_picture(program, &frame, &job);
-    let report = compare::images(&actual, &expected, compare::PRECISION);
-    ensure(report.passes(), || format!("{report:?}"))
+    for &quadrature in quadratures(program) {
+        let job = Job { size: REFERENCE_SIZE, quadrature, ..JOB };
+        let actual = render(program, &frame, &job, 2)?;
+        let expected = compare::reference_picture(program, &frame, &job);
+        let report = compare::images(&actual, &expected, compare::PRECISION);
+        ensure(report.passes(), || format!("{quadrature:?} {report:?}"))?;
+    }
+    Ok(())
+}
+
+/// Those that differ.
+fn quadratures(program: &Program) -> &'static [Quadrature] {
+    let all = &[Quadrature::Midpoint, Quadrature::Corrected];
+    if program.media.is_empty() { &all[..1] } else { all }
 }
 
 /// The picture of the GPU against that of the CPU.
 #[cfg(feature = "gpu")]
 pub(crate) fn agrees(gpu: &vol_runtime_gpu::Gpu, program: &Program) -> Result<(), Failed> {
     let frame = frame(program, 0.4, SIZE)?;
-    let cpu = render(program, &frame, &JOB, 2)?;
     let renderer = vol_runtime_gpu::Renderer::new(gpu, program)?;
-    let cancelled = std::sync::atomic::AtomicBool::new(false);
-    let rendered = renderer.render(gpu, program, &frame, &JOB, &|_| {}, &cancelled)?;
-    let (gpu, counts) = rendered.ok_or("cancelled by nobody")?;
-    ensure(counts.rays >= u64::from(SIZE[0] * SIZE[1]), || format!("{counts:?}"))?;
-    let report = compare::images(&cpu, &gpu, compare::GPU_IMAGE);
-    ensure(report.passes(), || format!("{report:?}"))
+    for &quadrature in quadratures(program) {
+        let job = Job { quadrature, ..JOB };
+        let cpu = render(program, &frame, &job, 2)?;
+        let cancelled = std::sync::atomic::AtomicBool::new(false);
+        let rendered = renderer.render(gpu, program, &frame, &job, &|_| {}, &cancelled)?;
+        let (image, counts) = rendered.ok_or("cancelled by nobody")?;
+        ensure(counts.rays >= u64::from(SIZE[0] * SIZE[1]), || format!("{counts:?}"))?;
+        let report = compare::images(&cpu, &image, compare::GPU_IMAGE);
+        ensure(report.passes(), || format!("{quadrature:?} {report:?}"))?;
+        let doubts = cpu.pixels.iter().zip(&image.pixels);
+        let apart = doubts.map(|(a, b)| (a.error - b.error).abs()).fold(0.0, f32::max);
+        ensure(apart < 1e-3, || format!("{quadrature:?}: estimated errors differ by {apart}"))?;
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@
 use crate::support::{Body, Draw, compile, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
-use vol_compiler::frame::{CameraFrame, Job, Sampling};
+use vol_compiler::frame::{CameraFrame, Job, Quadrature, Sampling};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -47,8 +47,17 @@ fn seen(draw: &Draw<'_>, text: &str) -> Result<Vec<Seen>, Failed> {
     const SIZE: [u32; 2] = [60, 40];
     let program = compile("test.vol", text)?;
     let frame = frame(&program, 0.0, SIZE)?;
-    let image =
-        draw(&program, &frame, &Job { size: SIZE, step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE })?;
+    let image = draw(
+        &program,
+        &frame,
+        &Job {
+            size: SIZE,
+            step: 1.0,
+            shadow_step: 1.0,
+            quadrature: Quadrature::Midpoint,
+            sampling: Sampling::CENTRE,
+        },
+    )?;
     let CameraFrame { origin, forward, right, up } = frame.camera;
     let [origin, forward, right, up] = [origin, forward, right, up].map(|v| v.map(f64::from));
     let pixels = image.pixels.iter().enumerate().filter(|(_, pixel)| pixel.depth.is_finite());

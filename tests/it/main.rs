@@ -3,6 +3,7 @@
 //! A harness of its own, so that a GPU test on a machine without a device is listed as ignored, with
 //! the reason, instead of passing silently. Names are `topic::case`, GPU tests begin with `gpu::`.
 
+mod accuracy;
 mod architecture;
 mod canary;
 mod cli;
@@ -43,6 +44,7 @@ use libtest_mimic::{Arguments, Trial};
 fn main() -> std::process::ExitCode {
     let arguments = Arguments::from_args();
     let mut trials: Vec<Trial> = Vec::new();
+    trials.extend(accuracy::trials());
     trials.extend(architecture::trials());
     trials.extend(canary::trials());
     trials.extend(cli::trials());

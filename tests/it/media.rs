@@ -6,7 +6,7 @@
 use crate::support::{Body, Draw, compile, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::PI;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -35,7 +35,7 @@ const FAR_CAMERA: &str = "camera { from: (0, 0, 50), at: (0, 0, 0), fov: 0.2deg 
 fn draw(draw: &Draw<'_>, text: &str, size: [u32; 2], step: f32) -> Result<Image, Failed> {
     let program = compile("media.vol", text)?;
     let frame = frame(&program, 0.0, size)?;
-    draw(&program, &frame, &Job { size, step, shadow_step: step, sampling: Sampling::CENTRE })
+    draw(&program, &frame, &Job { size, step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE })
 }
 
 /// Colour and transmittance of the middle pixel.

@@ -3,7 +3,7 @@
 use crate::support::{compile, ensure, frame};
 use libtest_mimic::{Failed, Trial};
 use std::sync::atomic::AtomicBool;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 use vol_runtime_cpu::{Method, TubeBounds, render_by};
 
 /// The trials of this file.
@@ -24,7 +24,7 @@ fn render(scene: &str, method: Method, job: &Job) -> Result<(Image, vol_runtime_
 }
 
 fn job(step: f32, samples: u32) -> Job {
-    Job { size: [12, 9], step, shadow_step: step, sampling: Sampling::uniform(samples) }
+    Job { size: [12, 9], step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::uniform(samples) }
 }
 
 fn fixed(tube_bounds: TubeBounds) -> Method {

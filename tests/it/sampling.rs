@@ -4,7 +4,7 @@ use crate::support::{compile, compile_file, ensure, frame, render};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::compare;
-use vol_compiler::frame::{Frame, Image, Job, Sampling};
+use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// The trials of this file.
@@ -52,7 +52,7 @@ fn edges(render: &Renderer<'_>) -> Result<(), Failed> {
             let program = compile("edge.vol", &scene)?;
             let size = [SIDE; 2];
             let sampling = Sampling::uniform(samples);
-            let job = Job { size, step: 1.0, shadow_step: 1.0, sampling };
+            let job = Job { size, step: 1.0, shadow_step: 1.0, quadrature: Quadrature::Midpoint, sampling };
             let image = render(&program, &frame(&program, 0.0, size)?, &job)?;
             for (index, pixel) in (0..).zip(&image.pixels) {
                 let exact = coverage(degrees.to_radians(), [index % SIDE, index / SIDE]);
@@ -117,7 +117,7 @@ fn agrees(gpu: &vol_runtime_gpu::Gpu, scene: &str, sampling: Sampling) -> Result
     let program = compile_file(&Path::new(env!("CARGO_MANIFEST_DIR")).join(scene))?;
     let size = [33, 20];
     let frame = frame(&program, 0.4, size)?;
-    let job = Job { size, step: 0.1, shadow_step: 0.2, sampling };
+    let job = Job { size, step: 0.1, shadow_step: 0.2, quadrature: Quadrature::Midpoint, sampling };
     let idle = std::sync::atomic::AtomicBool::new(false);
     let rendered = vol_runtime_cpu::render(&program, &frame, &job, Some(2), &|_| {}, &idle);
     let (cpu, stats) = rendered.ok_or("cancelled by nobody")?;

@@ -3,7 +3,7 @@
 use libtest_mimic::{Failed, Trial};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use vol_compiler::frame::{Frame, Image, Job, Sampling};
+use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 pub(crate) use vol_compiler::ir::verify::random::Random;
 use vol_compiler::ir::{Function, FunctionId, Module};
 use vol_compiler::program::Program;
@@ -140,7 +140,12 @@ fn draw_on_gpu(
 pub(crate) fn picture(text: &str, size: [u32; 2], step: f32) -> Result<Image, Failed> {
     let program = compile("test.vol", text)?;
     let frame = frame(&program, 0.0, size)?;
-    render(&program, &frame, &Job { size, step, shadow_step: step, sampling: Sampling::CENTRE }, 2)
+    render(
+        &program,
+        &frame,
+        &Job { size, step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE },
+        2,
+    )
 }
 
 /// A program that only holds one function, to evaluate it on every backend. Its curves are those of a

@@ -9,7 +9,7 @@ use crate::support::{Random, compile, compile_file, ensure, examples, frame, ren
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::backend::Device;
-use vol_compiler::frame::{CameraFrame, Frame, Job, Sampling, Stride};
+use vol_compiler::frame::{CameraFrame, Frame, Job, Quadrature, Sampling, Stride};
 use vol_compiler::program::Program;
 
 /// Width and height of a picture.
@@ -165,7 +165,13 @@ fn around(random: &mut Random, centre: [f32; 3], radius: f32) -> CameraFrame {
 }
 
 fn missed_in_picture(program: &Program, frame: &Frame, radius: f32) -> Result<Option<String>, Failed> {
-    let job = Job { size: [SIZE; 2], step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE };
+    let job = Job {
+        size: [SIZE; 2],
+        step: 1.0,
+        shadow_step: 1.0,
+        quadrature: Quadrature::Midpoint,
+        sampling: Sampling::CENTRE,
+    };
     let picture = render(program, frame, &job, 2)?;
     let camera = &frame.camera;
     let (near, far) = (1.5 * radius, 3.5 * radius);

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 use std::time::Instant;
 use vol::backend::Device;
 use vol_compiler::curve::Quadratic;
-use vol_compiler::frame::{Frame, Job, Sampling};
+use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// The trials of this file.
@@ -32,7 +32,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             let text = format!("{text}\ncamera {{ from: (0, 0, 6), at: (0, 0, 0), fov: 30deg }}\nlight l {{ from: (0, 1, 0) }}");
             let program = compile("cross.vol", &text)?;
             let frame = frame(&program, 0.0, [33, 33])?;
-            let job = Job { size: [33, 33], step: 0.01, shadow_step: 0.1, sampling: Sampling::CENTRE };
+            let job = Job { size: [33, 33], step: 0.01, shadow_step: 0.1, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE };
             Ok(draw(&program, &frame, &job)?.pixels[16 * 33 + 16].color[0])
         };
         let through = |depth: f64| depth as f32;

@@ -23,8 +23,9 @@
 //! | 24 | `AT_SAMPLES` | samples of a pixel, or the most |
 //! | 25 | `AT_TOLERANCE` | error at which a pixel takes no more of them, 0 for as many everywhere |
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
-//! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
-//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
+//! | 27 | `AT_QUADRATURE` | 0 midpoint, 1 corrected |
+//! | 28 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
+//! | 28 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 10 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
@@ -32,13 +33,13 @@
 //! might flush.
 
 use super::WgslError;
-use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel, Stride};
+use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel, Quadrature, Stride};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
-const INTEGRATOR: [&str; 11] = [
+const INTEGRATOR: [&str; 14] = [
     include_str!("render.wgsl"),
     include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
@@ -49,11 +50,14 @@ const INTEGRATOR: [&str; 11] = [
     include_str!("render/penumbra.wgsl"),
     include_str!("render/occlusion.wgsl"),
     include_str!("render/comb.wgsl"),
+    include_str!("render/panel.wgsl"),
+    include_str!("render/scatter.wgsl"),
+    include_str!("render/corrected.wgsl"),
     include_str!("render/medium.wgsl"),
 ];
 
 /// Words before the objects.
-const HEADER_WORDS: usize = 27;
+const HEADER_WORDS: usize = 28;
 
 /// Words of an object.
 const OBJECT_WORDS: usize = 8;
@@ -68,7 +72,7 @@ const MEDIUM_WORDS: usize = 9;
 const CELL_WORDS: usize = 6;
 
 /// Words of `vol_output` per pixel.
-pub const PIXEL_WORDS: usize = 14;
+pub const PIXEL_WORDS: usize = 15;
 
 /// Depth that stands for "no surface"; the shader writes 1e30.
 const NO_DEPTH: f32 = 1e29;
@@ -77,7 +81,7 @@ const NO_DEPTH: f32 = 1e29;
 const INFINITE: f32 = 1e6;
 
 /// Places in the header, in words.
-const HEADER: [(&str, usize); 13] = [
+const HEADER: [(&str, usize); 14] = [
     ("AT_TILE", 0),
     ("AT_SIZE", 4),
     ("AT_STEP", 6),
@@ -91,6 +95,7 @@ const HEADER: [(&str, usize); 13] = [
     ("AT_SAMPLES", 24),
     ("AT_TOLERANCE", 25),
     ("AT_BUDGET", 26),
+    ("AT_QUADRATURE", 27),
 ];
 
 const BINDINGS: &str = "\
@@ -101,11 +106,12 @@ const BINDINGS: &str = "\
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_input        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_output       u32: 14 words per pixel of the whole picture, rows from the top, 0 before
+//   4 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
 //                      evaluations, camera rays; where the pixel is: samples in the mean, bits of
-//                      f32 of the spread of the radiance and of the transmittance
+//                      f32 of the spread of the radiance and of the transmittance; bits of f32 of
+//                      how far the radiance is from the one by every other node of the media
 ";
 
 /// The complete shader of a program.
@@ -247,14 +253,14 @@ fn picks(program: &Program) -> [Pick<'static>; 8] {
         point("medium_region(index: u32, p: vec3f) -> f32", "FAR", of_media(|m| m.region), "v", SEARCH),
         point(
             "medium_interior(index: u32, p: vec3f) -> Interior",
-            "Interior(vec3f(0.0), vec3f(0.0), vec3f(0.0))",
+            "Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0))",
             of_media(|m| m.interior),
-            "Interior(vec3f(v.v0, v.v1, v.v2), vec3f(v.v3, v.v4, v.v5), vec3f(v.v6, v.v7, v.v8))",
+            "Interior(v.v0, vec3f(v.v1, v.v2, v.v3), vec3f(v.v4, v.v5, v.v6), vec3f(v.v7, v.v8, v.v9))",
             SAMPLE,
         ),
         point(
-            "medium_extinction(index: u32, p: vec3f) -> vec3f",
-            "vec3f(0.0)",
+            "medium_extinction(index: u32, p: vec3f) -> vec4f",
+            "vec4f(0.0)",
             of_media(|m| m.extinction),
             "v",
             SAMPLE,
@@ -317,6 +323,10 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     words.extend([camera.origin, camera.forward, camera.right, camera.up, frame.background].concat());
     words.push(frame.lights.len() as f32);
     words.extend([job.sampling.most as f32, job.sampling.tolerance, budget as f32]);
+    words.push(match job.quadrature {
+        Quadrature::Midpoint => 0.0,
+        Quadrature::Corrected => 1.0,
+    });
     // Records of all objects and media of the program; those that are not in the frame stay 0.
     let mut objects = vec![[0.0; OBJECT_WORDS]; program.objects.len()];
     for object in &frame.objects {
@@ -376,6 +386,7 @@ pub fn unpack(width: u32, height: u32, words: &[u32]) -> Image {
             color: [word(0), word(1), word(2)],
             transmittance: [word(3), word(4), word(5)],
             depth: if word(6) < NO_DEPTH { word(6) } else { f32::INFINITY },
+            error: word(14),
         }
     };
     Image { width, height, pixels: words.chunks_exact(PIXEL_WORDS).map(pixel).collect() }

@@ -27,6 +27,8 @@ const TRIES: u32 = 8u;
 const UNLIT: f32 = 1.0;
 const UNSHADOWED: f32 = 2.0;
 const SHADOWED: f32 = 3.0;
+const CORRECTED: f32 = 1.0;
+const ROOT_THIRD: f32 = 0.5773503;
 
 fn word3(at: u32) -> vec3f {
     return vec3f(vol_input[at], vol_input[at + 1u], vol_input[at + 2u]);
@@ -66,6 +68,18 @@ fn mean_decay(x: f32) -> f32 {
 
 fn mean_decay3(x: vec3f) -> vec3f {
     return vec3f(mean_decay(x.x), mean_decay(x.y), mean_decay(x.z));
+}
+
+// (1 - (1 + x) exp(-x)) / x^2, 1/2 at 0.
+fn decay_moment(x: f32) -> f32 {
+    let tail = x * ((1.0f / 144.0f) - (x * ((1.0f / 840.0f) - (x * (1.0f / 5760.0f)))));
+    let series = 0.5 - (x * ((1.0f / 3.0f) - (x * ((1.0f / 8.0f) - (x * ((1.0f / 30.0f) - tail))))));
+    let quotient = (mean_decay(x) - decay(x)) / max(x, 0.5);
+    return select(quotient, series, x < 0.5);
+}
+
+fn decay_moment3(x: vec3f) -> vec3f {
+    return vec3f(decay_moment(x.x), decay_moment(x.y), decay_moment(x.z));
 }
 
 // x^y for x >= 0; 0 at 0.
@@ -127,8 +141,10 @@ fn radiance(ray: Ray) -> Radiance {
     }
     // Look at it through the media.
     let glow = march(ray, end);
+    let coarse = glow.coarse_light + (glow.coarse_transmittance * behind);
     let color = glow.light + (glow.transmittance * behind);
-    return Radiance(color, select(glow.transmittance, vec3f(0.0), contact.hit), depth);
+    let doubt = length3(coarse - color) * ROOT_THIRD;
+    return Radiance(color, select(glow.transmittance, vec3f(0.0), contact.hit), depth, doubt);
 }
 
 fn read_pixel(index: u32) -> Mean {
@@ -140,6 +156,7 @@ fn read_pixel(index: u32) -> Mean {
         output_float(at + 6u),
         output_float(at + 12u),
         output_float(at + 13u),
+        output_float(at + 14u),
     );
 }
 
@@ -165,4 +182,5 @@ fn write_pixel(index: u32, mean: Mean) {
     vol_output[at + 11u] = mean.count;
     vol_output[at + 12u] = bitcast<u32>(mean.color_spread);
     vol_output[at + 13u] = bitcast<u32>(mean.transmittance_spread);
+    vol_output[at + 14u] = bitcast<u32>(mean.doubt);
 }

@@ -1,7 +1,8 @@
 //! The samples of media along a ray, and the length of ray that each stands for.
 //!
 //! One comb per ray: node `i` is at `(i + 1/2) step` from the ray's origin, whatever the ray
-//! enters or leaves, so that skipping empty parts changes no sum. Between two neighbouring nodes
+//! enters or leaves, so that skipping empty parts changes no sum; for [`super::panel`] at `i step`. What
+//! follows is of the midpoint form. Between two neighbouring nodes
 //! of which both are inside a medium, each gets half of the interval; if only one is inside, the
 //! wall is where the signed distances say, and that node gets all up to the wall. This is second
 //! order at hard walls, at the ray's origin and at its end. Parts between two outside nodes are
@@ -16,6 +17,7 @@ use super::camera::{FAR, Ray, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Integrator, Medium};
 use crate::real::{Real, Vec3, add, splat, sub};
+use vol_compiler::frame::Quadrature;
 
 /// Most nodes of one ray: a medium without bounds ends after so many.
 pub(crate) const MAX_NODES: i32 = 16_384;
@@ -59,9 +61,12 @@ pub(crate) struct Cursor {
 
 /// The combs of a batch of rays.
 pub(crate) struct Combs<'a, R> {
-    step: R,
-    ends: &'a [R],
-    ranges: Vec<Vec<NodeRange>>,
+    pub(super) step: R,
+    /// Where node 0 is, in steps.
+    offset: R,
+    pub(super) ends: &'a [R],
+    /// Nodes that may be inside, per medium and ray; of panels the first node of each.
+    pub(super) ranges: Vec<Vec<NodeRange>>,
     /// Nodes that may be inside some medium, per ray.
     pub(crate) whole: Vec<NodeRange>,
 }
@@ -69,7 +74,7 @@ pub(crate) struct Combs<'a, R> {
 impl<R: Real> Combs<'_, R> {
     /// Distance of a node from the origin of its ray.
     pub(crate) fn distance(&self, node: i32) -> R {
-        node_distance(node, self.step)
+        node_distance(node, self.step, self.offset)
     }
 
     /// The rays that have nodes, at their first one.
@@ -91,13 +96,13 @@ pub(crate) struct Inside<R> {
 }
 
 /// Distance of a node from the origin of the ray.
-pub(crate) fn node_distance<R: Real>(node: i32, step: R) -> R {
-    (R::from_index(node) + R::from_f32(0.5)) * step
+fn node_distance<R: Real>(node: i32, step: R, offset: R) -> R {
+    (R::from_index(node) + offset) * step
 }
 
 /// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-/// inside are in the range or next to it.
-fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, end: R) -> NodeRange {
+/// inside are in the range or next to it, and so are the panels on both sides.
+fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end: R) -> NodeRange {
     let reach = splat(R::from_f32(1.01) * step);
     let span = slab(ray, sub(medium.lo, reach), add(medium.hi, reach));
     let exit = span.exit.min(end);
@@ -106,7 +111,7 @@ fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, end: R) -> Nod
     }
     // Node numbers stay where f32 knows them and a half.
     let most = R::from_f32(4_194_304.0);
-    let first = (span.entry / step - R::from_f32(0.5)).floor().max(R::ZERO).min(most);
+    let first = (span.entry / step - offset).floor().max(R::ZERO).min(most);
     let last = (exit / step).floor().min(most);
     NodeRange { first: first.to_index(), last: last.to_index() }
 }
@@ -125,10 +130,14 @@ impl<F: Fields> Integrator<'_, F> {
         ends: &'a [F::Real],
         step: F::Real,
     ) -> Combs<'a, F::Real> {
+        let offset = match self.scene.quadrature {
+            Quadrature::Midpoint => F::Real::from_f32(0.5),
+            Quadrature::Corrected => F::Real::ZERO,
+        };
         let mut whole = vec![NodeRange::NONE; rays.len()];
         let mut ranges = Vec::with_capacity(self.scene.media.len());
         for medium in &self.scene.media {
-            let range = |(ray, &end)| node_range(ray, medium, step, end);
+            let range = |(ray, &end)| node_range(ray, medium, step, offset, end);
             let own: Vec<NodeRange> = rays.iter().zip(ends).map(range).collect();
             whole.iter_mut().zip(&own).for_each(|(whole, &own)| *whole = whole.union(own));
             ranges.push(own);
@@ -136,7 +145,7 @@ impl<F: Fields> Integrator<'_, F> {
         for range in &mut whole {
             range.last = range.last.min(range.first + MAX_NODES - 1);
         }
-        Combs { step, ends, ranges, whole }
+        Combs { step, offset, ends, ranges, whole }
     }
 
     /// Signed distances of one medium's region; [`FAR`] where neither the point nor one within a step
@@ -181,7 +190,7 @@ impl<F: Fields> Integrator<'_, F> {
             if first <= last {
                 runs.push((which, first, last, points.len()));
                 let nodes = first - 1..=last + 1;
-                nodes.for_each(|node| points.push(rays[cursor.ray].at(node_distance(node, combs.step))));
+                nodes.for_each(|node| points.push(rays[cursor.ray].at(combs.distance(node))));
             }
         }
         let region = self.region(medium, &points, combs.step);
@@ -190,7 +199,7 @@ impl<F: Fields> Integrator<'_, F> {
         for (which, first, last, offset) in runs {
             let cursor = active[which];
             let wall = |node: i32| {
-                let t = node_distance(node, combs.step);
+                let t = combs.distance(node);
                 let index = offset + (node - (first - 1)) as usize;
                 region[index].max((t - combs.ends[cursor.ray]).max(-t))
             };
@@ -239,7 +248,7 @@ mod tests {
     /// Sum of the weights of a slab between two walls.
     fn covered(entry: f64, exit: f64, step: f64) -> f64 {
         let wall = |node: i32| {
-            let t = node_distance(node, step);
+            let t = node_distance(node, step, 0.5);
             (entry - t).max(t - exit).max(-t)
         };
         let weight = |node| share(wall(node), wall(node - 1), step) + share(wall(node), wall(node + 1), step);

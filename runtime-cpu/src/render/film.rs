@@ -8,13 +8,16 @@ use super::camera::{FAR, Ray, depth};
 use super::fields::Fields;
 use super::sampling::Mean;
 use super::scene::{Batches, Integrator, Scene};
-use crate::real::{Real, Vec3, add, mul, splat};
+use crate::real::{Real, Vec3, add, length, mul, splat, sub};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use vol_compiler::frame::Job;
 
 /// Width and height of a tile in pixels; a tile is one unit of work.
 const TILE: u32 = 16;
+
+/// 1 / sqrt(3): from the length of a colour to its rms over the channels.
+const ROOT_THIRD: f32 = 0.577_350_3;
 
 /// What a camera ray brings back, or the mean of several.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +28,9 @@ pub(crate) struct Radiance<R> {
     pub(crate) transmittance: Vec3<R>,
     /// Distance of the first surface along the viewing axis.
     pub(crate) depth: Option<R>,
+    /// How far the colour is from the one by every other node of the media, rms over the channels; see
+    /// [`super::medium`].
+    pub(crate) doubt: R,
 }
 
 /// Part of the picture, in pixels.
@@ -66,8 +72,11 @@ impl<F: Fields> Integrator<'_, F> {
         let glows = self.through(rays, &ends);
         let mut pixels = Vec::with_capacity(rays.len());
         for (glow, (color, depth)) in glows.into_iter().zip(behind) {
+            let coarse = add(glow.coarse_light, mul(glow.coarse_transmittance, color));
+            let color = add(glow.light, mul(glow.transmittance, color));
             pixels.push(Radiance {
-                color: add(glow.light, mul(glow.transmittance, color)),
+                color,
+                doubt: length(sub(coarse, color)) * F::Real::from_f32(ROOT_THIRD),
                 transmittance: if depth.is_some() { zero } else { glow.transmittance },
                 depth,
             });
@@ -123,7 +132,7 @@ fn assemble<R: Real>(
     [width, height]: [u32; 2],
     tiles: Vec<(Tile, Vec<Radiance<R>>, Stats)>,
 ) -> (Vec<Radiance<R>>, Stats) {
-    let dark = Radiance { color: splat(R::ZERO), transmittance: splat(R::ZERO), depth: None };
+    let dark = Radiance { color: splat(R::ZERO), transmittance: splat(R::ZERO), depth: None, doubt: R::ZERO };
     let mut picture = vec![dark; width as usize * height as usize];
     let mut stats = Stats::default();
     for (tile, pixels, own) in tiles {

@@ -90,8 +90,7 @@ impl<F: Fields> Integrator<'_, F> {
         jitter: Option<u64>,
         axes: Option<&[Option<TubeAxis>]>,
     ) -> Vec<Glow<F::Real>> {
-        let clear = Glow { light: splat(F::Real::ZERO), transmittance: splat(F::Real::ONE) };
-        let mut glows = vec![clear; rays.len()];
+        let mut glows = vec![Glow::clear(); rays.len()];
         let mut marches = self.start_marches(rays, ends, self.scene.step, axes.is_some());
         for march in &mut marches {
             march.jitter = jitter.map(|seed| Stream::of_ray(&rays[march.ray], seed, Purpose::Jitter));

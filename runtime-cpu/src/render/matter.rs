@@ -4,7 +4,7 @@
 
 use super::camera::{FAR, Ray};
 use super::fields::{Fields, Points};
-use super::medium::angle;
+use super::scatter::turn;
 use super::scene::{Integrator, Light};
 use super::shade::{Arriving, arriving};
 use super::shadow::ShadowRay;
@@ -45,12 +45,16 @@ pub(super) fn bounds(
     if of(medium.region)[0].lo > 0.0 {
         return None;
     }
-    let interior = of(medium.interior);
+    // Coefficients are per unit of density, and negative density is none.
+    let (interior, shadow) = (of(medium.interior), of(medium.extinction));
+    let most = |density: Interval, coefficient: &Interval| density.hi.max(0.0) * coefficient.hi;
+    let of_camera = interior[4..7].iter().map(|extinction| most(interior[0], extinction));
     // Extinction of shadows and of camera rays is one formula, but each is bounded as it is asked.
-    let extinctions = of(medium.extinction).into_iter().chain(interior[3..6].iter().copied());
-    let larger = |most: f64, bound: Interval| if bound.hi.is_nan() { f64::NAN } else { most.max(bound.hi) };
-    let glows = interior[6..9].iter().any(|emission| !(emission.hi <= 0.0));
-    Some(MatterBounds { extinction: extinctions.fold(0.0, larger), glows })
+    let of_shadows = shadow[1..4].iter().map(|extinction| most(shadow[0], extinction));
+    let larger = |most: f64, bound: f64| if bound.is_nan() { f64::NAN } else { most.max(bound) };
+    let extinction = of_camera.chain(of_shadows).fold(0.0, larger);
+    let glows = !(interior[0].hi <= 0.0) && interior[7..10].iter().any(|emission| !(emission.hi <= 0.0));
+    Some(MatterBounds { extinction, glows })
 }
 
 /// A point on a camera ray at which light is scattered.
@@ -82,18 +86,22 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// What a medium is at points inside it.
     pub(super) fn matter(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<Matter<F::Real>> {
-        let values: [Vec<F::Real>; 9] = self.fields.sample(self.scene.media[medium].interior, points);
+        let values: [Vec<F::Real>; 10] = self.fields.sample(self.scene.media[medium].interior, points);
         self.stats.medium_samples += points.len() as u64;
-        let color = |first: usize, i: usize| [values[first][i], values[first + 1][i], values[first + 2][i]];
-        let matter = |i| Matter { scattering: color(0, i), extinction: color(3, i), emission: color(6, i) };
+        let color = |first: usize, i: usize| {
+            let density = values[0][i].max(F::Real::ZERO);
+            scale([values[first][i], values[first + 1][i], values[first + 2][i]], density)
+        };
+        let matter = |i| Matter { scattering: color(1, i), extinction: color(4, i), emission: color(7, i) };
         (0..points.len()).map(matter).collect()
     }
 
     /// Extinction of a medium at points inside it, for rays towards lights.
     pub(super) fn extinction(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<Vec3<F::Real>> {
-        let [r, g, b] = self.fields.sample(self.scene.media[medium].extinction, points);
+        let [density, r, g, b] = self.fields.sample(self.scene.media[medium].extinction, points);
         self.stats.shadow_samples += points.len() as u64;
-        (0..points.len()).map(|i| [r[i], g[i], b[i]]).collect()
+        let of = |i: usize| scale([r[i], g[i], b[i]], density[i].max(F::Real::ZERO));
+        (0..points.len()).map(of).collect()
     }
 
     /// Light of all lamps that is scattered towards the eye at each place.
@@ -117,10 +125,10 @@ impl<F: Fields> Integrator<'_, F> {
             let seen = self.lamp_visibility(light, places, &lamps, &parts);
             for (index, medium) in scene.media.iter().enumerate() {
                 let own: Vec<_> = parts.iter().filter(|part| part.medium == index).collect();
-                let turn =
-                    |part: &&Part<F::Real>| angle(lamps[part.place].direction, places[part.place].direction);
+                let angles =
+                    |part: &&Part<F::Real>| turn(lamps[part.place].direction, places[part.place].direction);
                 let [less, more]: [Vec<_>; 2] =
-                    [0, 1].map(|i| own.iter().map(|part| turn(part)[i]).collect());
+                    [0, 1].map(|i| own.iter().map(|part| angles(part)[i]).collect());
                 let [phase] = self.fields.apply(medium.phase, &[&less, &more]);
                 for (part, phase) in own.into_iter().zip(phase) {
                     let free = medium.lighting == Lighting::Unshadowed;

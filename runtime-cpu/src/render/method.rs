@@ -9,13 +9,12 @@ use super::fields::Fields;
 use super::film::Watch;
 use super::majorant::Majorants;
 use super::medium::Glow;
-use super::pilot::first_step;
 use super::scene::{Batches, Integrator, Scene};
 use super::tube_axis::TubeAxis;
 use super::{Stats, render_scene};
 use crate::real::Vec3;
 use std::sync::atomic::AtomicBool;
-use vol_compiler::frame::{Frame, Image, Job};
+use vol_compiler::frame::{Aabb, Frame, Image, Job};
 use vol_compiler::program::Program;
 
 /// How the media along rays are integrated.
@@ -84,10 +83,20 @@ impl Way {
 }
 
 /// Step of [`Method::FixedStep`] where none is asked for: a 96th of the diagonal of the box around the
-/// media, in scene units.
+/// media, in scene units; of the whole scene where they have no bounds.
 #[must_use]
 pub fn fixed_step_default(frame: &Frame) -> f32 {
-    0.25 * first_step(frame)
+    let mut around = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
+    for medium in &frame.media {
+        for axis in 0..3 {
+            around.lo[axis] = around.lo[axis].min(medium.bounds.lo[axis]);
+            around.hi[axis] = around.hi[axis].max(medium.bounds.hi[axis]);
+        }
+    }
+    let diagonal =
+        |bounds: &Aabb| (0..3).map(|axis| (bounds.hi[axis] - bounds.lo[axis]).powi(2)).sum::<f32>().sqrt();
+    let sizes = [diagonal(&around), diagonal(&frame.bounds)];
+    sizes.into_iter().find(|&size| size > 0.0 && size < 1e5).unwrap_or(1.0) / 96.0
 }
 
 /// [`render`](super::render()) on the surrounding pool by one of the methods.
@@ -110,11 +119,13 @@ pub fn render_by(
 impl<F: Fields> Integrator<'_, F> {
     /// Follows each camera ray through the media up to its end.
     pub(super) fn through(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Glow<F::Real>> {
-        match &self.scene.way {
-            Way::Comb => self.march(rays, ends),
+        let mut glows = match &self.scene.way {
+            Way::Comb => return self.march(rays, ends),
             Way::FixedStep { jitter, axes } => self.march_evenly(rays, ends, *jitter, axes.as_deref()),
             Way::MonteCarlo { seed, majorants } => self.draw_paths(rays, ends, *seed, majorants),
-        }
+        };
+        glows.iter_mut().for_each(Glow::without_doubt);
+        glows
     }
 
     /// Optical depth, or an estimate, of each ray towards a light; nothing of the comb.

@@ -61,7 +61,7 @@ impl<F: Fields> Integrator<'_, F> {
         seed: u64,
         majorants: &Majorants,
     ) -> Vec<Glow<F::Real>> {
-        let dark = Glow { light: splat(F::Real::ZERO), transmittance: splat(F::Real::ZERO) };
+        let dark = Glow { transmittance: splat(F::Real::ZERO), ..Glow::clear() };
         let mut glows = vec![dark; rays.len()];
         let (mut places, mut parts, mut origins) = (Vec::new(), Vec::new(), Vec::new());
         let mut walks = start(rays, ends, seed, Purpose::Path, majorants);

@@ -73,6 +73,8 @@ pub(super) struct Mean<R> {
     transmittance: Vec3<R>,
     /// Of the first sample.
     depth: Option<R>,
+    /// Mean of the samples' doubts: as large as if all of them erred to one side.
+    doubt: R,
     /// Sum of squared distances of the samples' colours from their mean.
     color_spread: R,
     /// The same of the transmittances.
@@ -88,6 +90,7 @@ impl<R: Real> Mean<R> {
             color: zero,
             transmittance: zero,
             depth: None,
+            doubt: R::ZERO,
             color_spread: R::ZERO,
             transmittance_spread: R::ZERO,
         }
@@ -101,9 +104,11 @@ impl<R: Real> Mean<R> {
             self.color = sample.color;
             self.transmittance = sample.transmittance;
             self.depth = sample.depth;
+            self.doubt = sample.doubt;
             return;
         }
         let share = R::ONE / R::from_index(self.count as i32);
+        self.doubt = self.doubt + (sample.doubt - self.doubt) * share;
         let from_old = sub(sample.color, self.color);
         self.color = add(self.color, scale(from_old, share));
         self.color_spread = self.color_spread + dot(from_old, sub(sample.color, self.color));
@@ -149,7 +154,12 @@ impl<R: Real> Mean<R> {
     }
 
     pub(super) fn radiance(&self) -> Radiance<R> {
-        Radiance { color: self.color, transmittance: self.transmittance, depth: self.depth }
+        Radiance {
+            color: self.color,
+            transmittance: self.transmittance,
+            depth: self.depth,
+            doubt: self.doubt,
+        }
     }
 }
 

@@ -3,7 +3,8 @@
 use super::fields::Fields;
 use super::method::Way;
 use crate::real::{Real, Vec3, length, vector};
-use vol_compiler::frame::{Frame, Job};
+use std::sync::atomic::{AtomicU64, Ordering};
+use vol_compiler::frame::{Frame, Job, Quadrature};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Lighting;
 use vol_compiler::wgsl::render::{padded, padded_cells};
@@ -33,6 +34,8 @@ pub(crate) struct Scene<R> {
     pub(crate) shadow_step: R,
     /// How media are integrated.
     pub(crate) way: Way,
+    /// What becomes of the nodes.
+    pub(crate) quadrature: Quadrature,
 }
 
 /// See [`vol_compiler::frame::CameraFrame`].
@@ -127,6 +130,7 @@ impl<R: Real> Scene<R> {
             step: R::from_f32(job.step),
             shadow_step: R::from_f32(job.shadow_step),
             way: Way::Comb,
+            quadrature: job.quadrature,
         }
     }
 }
@@ -187,4 +191,39 @@ pub(crate) struct Integrator<'a, F: Fields> {
     pub(crate) sides: Vec<F::Real>,
     pub(crate) batches: Batches,
     pub(crate) stats: super::Stats,
+    /// What it may spend; without, as much as it takes.
+    pub(crate) purse: Option<&'a Purse>,
+}
+
+/// How many samples of media some integrators may take together.
+#[derive(Debug)]
+pub(crate) struct Purse {
+    limit: u64,
+    spent: AtomicU64,
+}
+
+impl Purse {
+    /// As many as `limit`.
+    pub(crate) fn new(limit: u64) -> Self {
+        Self { limit, spent: AtomicU64::new(0) }
+    }
+
+    /// Whether more was asked for, so that rays ended early. Does not depend on who asked first.
+    pub(crate) fn is_overdrawn(&self) -> bool {
+        self.spent.load(Ordering::Relaxed) > self.limit
+    }
+}
+
+impl<'a, F: Fields> Integrator<'a, F> {
+    /// The same with a limit on its work.
+    pub(crate) fn paid_from(mut self, purse: &'a Purse) -> Self {
+        self.purse = Some(purse);
+        self
+    }
+
+    /// Pays for a number of samples; whether there is nothing left, and the rays should end.
+    pub(crate) fn is_broke(&self, samples: u64) -> bool {
+        self.purse
+            .is_some_and(|purse| purse.spent.fetch_add(samples, Ordering::Relaxed) + samples > purse.limit)
+    }
 }

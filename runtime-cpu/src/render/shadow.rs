@@ -5,11 +5,14 @@
 //! Twin: `compiler/src/wgsl/render/shadow.wgsl`.
 
 use super::camera::{FAR, Ray};
+use super::comb::{Combs, Cursor};
 use super::fields::Fields;
+use super::panel::Panels;
 use super::penumbra::Cone;
 use super::scene::Integrator;
 use super::surface::{MAX_STEPS, Walker, start};
 use crate::real::{Real, Vec3, add, scale, smallest, splat};
+use vol_compiler::frame::Quadrature;
 
 /// Optical depth above which nothing arrives; exp(-24) is 4e-11. It only grows along a ray, so
 /// stopping early and looking at the end come to the same.
@@ -123,16 +126,18 @@ impl<F: Fields> Integrator<'_, F> {
         let nodes = self.batches.nodes;
         let mut active = combs.active();
         while !active.is_empty() {
-            // Optical depth of each node, all media together.
+            let before = self.stats.shadow_samples + self.stats.region_evaluations;
+            // Optical depth of each node or panel, all media together.
             let mut steps = vec![splat(F::Real::ZERO); active.len() * nodes as usize];
-            for index in 0..self.scene.media.len() {
-                let inside = self.inside(index, rays, &combs, &active);
-                let extinction = self.scene.media[index].extinction;
-                let [r, g, b] = self.fields.sample(extinction, &inside.points);
-                self.stats.shadow_samples += r.len() as u64;
-                for (i, (&slot, &weight)) in inside.slots.iter().zip(&inside.weights).enumerate() {
-                    steps[slot] = add(steps[slot], scale([r[i], g[i], b[i]], weight));
+            for medium in 0..self.scene.media.len() {
+                match self.scene.quadrature {
+                    Quadrature::Midpoint => self.node_depths(medium, rays, &combs, &active, &mut steps),
+                    Quadrature::Corrected => self.panel_depths(medium, rays, &combs, &active, &mut steps),
                 }
+            }
+            let spent = self.stats.shadow_samples + self.stats.region_evaluations - before;
+            if self.is_broke(spent) {
+                break;
             }
             for (which, steps) in steps.chunks(nodes as usize).enumerate() {
                 let ray = active[which].ray;
@@ -146,5 +151,41 @@ impl<F: Fields> Integrator<'_, F> {
             });
         }
         depths
+    }
+
+    /// Adds the optical depth of one medium at the next nodes.
+    fn node_depths(
+        &mut self,
+        medium: usize,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+        steps: &mut [Vec3<F::Real>],
+    ) {
+        let inside = self.inside(medium, rays, combs, active);
+        let extinction = self.scene.media[medium].extinction;
+        let [density, r, g, b] = self.fields.sample(extinction, &inside.points);
+        self.stats.shadow_samples += density.len() as u64;
+        for (i, (&slot, &weight)) in inside.slots.iter().zip(&inside.weights).enumerate() {
+            let mass = density[i].max(F::Real::ZERO) * weight;
+            steps[slot] = add(steps[slot], scale([r[i], g[i], b[i]], mass));
+        }
+    }
+
+    /// Adds the optical depth of one medium in the next panels.
+    fn panel_depths(
+        &mut self,
+        medium: usize,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+        steps: &mut [Vec3<F::Real>],
+    ) {
+        let extinction = self.scene.media[medium].extinction;
+        let panels: Panels<_, 4> = self.panels(medium, extinction, rays, combs, active);
+        self.stats.shadow_samples += panels.places.len() as u64;
+        for panel in &panels.list {
+            steps[panel.slot] = add(steps[panel.slot], panels.depth(panel, 1));
+        }
     }
 }

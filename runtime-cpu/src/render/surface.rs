@@ -112,7 +112,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
     /// An integrator for camera rays of a scene.
     pub(crate) fn new(scene: &'a Scene<F::Real>, fields: F, batches: Batches) -> Self {
         let sides = vec![F::Real::ONE; scene.solids.len()];
-        let mut new = Self { scene, fields, sides, batches, stats: super::Stats::default() };
+        let mut new = Self { scene, fields, sides, batches, stats: super::Stats::default(), purse: None };
         new.find_sides();
         new
     }

@@ -9,7 +9,7 @@ use super::fields::{Fields, Points};
 use super::scene::Integrator;
 use crate::math::curve::closest;
 use crate::real::Real;
-use vol_compiler::curve::Piece;
+use vol_compiler::curve::CurveTable;
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::{Caps, Extent, LEAST_RADIUS, Program};
@@ -18,7 +18,7 @@ use vol_compiler::wgsl::render::padded;
 /// The axis of a medium's tube.
 #[derive(Debug)]
 pub(crate) struct TubeAxis {
-    pieces: Vec<Piece>,
+    curve: CurveTable,
     /// (t, arc length) to radius.
     radius: FunctionId,
     /// Whether it ends in planes.
@@ -41,7 +41,7 @@ impl TubeAxis {
         let media = frame.media.iter().filter(|medium| padded(&medium.bounds).is_some());
         let axis = |extent: &Extent| match extent {
             Extent::Tube { curve, radius, caps, .. } if *caps != Caps::Open => Some(Self {
-                pieces: frame.curve_tables[*curve as usize].pieces.clone(),
+                curve: frame.curve_tables[*curve as usize].clone(),
                 radius: *radius,
                 flat: *caps == Caps::Flat,
             }),
@@ -66,7 +66,8 @@ impl<F: Fields> Integrator<'_, F> {
             return region.into_iter().map(from).collect();
         };
         let feet: Vec<_> = (0..points.len())
-            .map(|index| closest(points.get(index).map(|x| x.to_f64() as f32), &axis.pieces))
+            .map(|index| points.get(index).map(|x| x.to_f64() as f32))
+            .map(|point| closest(point, &axis.curve.pieces, &axis.curve.nodes))
             .collect();
         let t: Vec<_> = feet.iter().map(|foot| F::Real::from_f32(foot.t)).collect();
         let arc_length: Vec<_> = feet.iter().map(|foot| F::Real::from_f32(foot.arc_length)).collect();

@@ -48,12 +48,15 @@ fn exr(sandbox: &Sandbox) -> Result<(), Failed> {
     equal((image.layer_data.size.width(), image.layer_data.size.height()), (32, 18))?;
     let channels = &image.layer_data.channel_data.list;
     let names: Vec<String> = channels.iter().map(|channel| channel.name.to_string()).collect();
-    equal(names.join(" "), "A B G R Transmittance.B Transmittance.G Transmittance.R Z".to_owned())?;
+    equal(
+        names.join(" "),
+        "A B Error.Estimate G R Transmittance.B Transmittance.G Transmittance.R Z".to_owned(),
+    )?;
     let samples = |index: usize| match &channels[index].sample_data {
         FlatSamples::F32(samples) => Ok(samples.clone()),
         _ => Err(Failed::from("not 32-bit float")),
     };
-    let (alpha, red, transmittance, depth) = (samples(0)?, samples(3)?, samples(6)?, samples(7)?);
+    let (alpha, red, transmittance, depth) = (samples(0)?, samples(4)?, samples(7)?, samples(8)?);
     let centre = 9 * 32 + 16;
     // In the corner the bare background, in the middle fog before it, no surface anywhere.
     equal((alpha[0], transmittance[0], depth[0]), (0.0, 1.0, f32::INFINITY))?;

@@ -8,6 +8,7 @@ use super::super::{Lowered, Lowerer};
 use super::{Plan, add_field, solid};
 use crate::ir::ValueId;
 use crate::ops::Op;
+use crate::passes::unclip::unclipped;
 use crate::program::{Field, Lighting, Medium};
 use std::rc::Rc;
 use vol_language::diag::Diagnostic;
@@ -60,16 +61,17 @@ pub(super) fn cloud(
     let most = graph.max(most, zero);
     let dense = graph.mul(most, amount);
     let density = graph.mul(dense, left);
-    let glow = graph.mul(density, left);
+    let density = unclipped(graph, density);
     let matter = Matter {
         density,
-        scatter: color,
+        shown: density,
+        color,
         scattering: [zero; 3],
-        extinction: [density; 3],
-        extinction_alone: [density; 3],
+        extinction: [one; 3],
+        extinction_alone: [one; 3],
         emission: color.map(|c| {
             let c = graph.max(c, zero);
-            graph.mul(glow, c)
+            graph.mul(left, c)
         }),
     };
     let filling = Filling { matter, phase: Rc::new(Phase::Isotropic), lighting: Lighting::None };
@@ -95,12 +97,14 @@ fn fill(
     let (name, region, p) = (&block.name, &point.region, point.world);
     let distance = region.distance(lowerer, p)?;
     let phase = phase.lower(&mut lowerer.graph);
-    let interior = [matter.scattering, matter.extinction, matter.emission].concat();
+    let per_density = [matter.scattering, matter.extinction, matter.emission].concat();
+    let interior = [&[matter.density][..], &per_density].concat();
+    let extinction = [&[matter.density][..], &matter.extinction_alone].concat();
     let medium = Medium {
         name: name.clone(),
         region: lowerer.function(&format!("region:{name}"), 3, &[distance]),
         interior: lowerer.function(&format!("interior:{name}"), 3, &interior),
-        extinction: lowerer.function(&format!("extinction:{name}"), 3, &matter.extinction_alone),
+        extinction: lowerer.function(&format!("extinction:{name}"), 3, &extinction),
         phase: lowerer.function(&format!("phase:{name}"), 2, &[phase]),
         lighting,
         extent: region.extent(lowerer, span)?,
@@ -110,9 +114,10 @@ fn fill(
     plan.fields.push(Field { name: format!("distance:{name}"), function: medium.region });
     let zero = lowerer.graph.number(0.0);
     let outside = lowerer.graph.apply(Op::Less, &[zero, distance]);
-    let density = lowerer.graph.select(outside, zero, matter.density);
+    let density = lowerer.graph.max(matter.shown, zero);
+    let density = lowerer.graph.select(outside, zero, density);
     add_field(lowerer, &mut plan.fields, format!("density:{name}"), &[density]);
-    add_field(lowerer, &mut plan.fields, format!("colour:{name}"), &matter.scatter);
+    add_field(lowerer, &mut plan.fields, format!("colour:{name}"), &matter.color);
     let local = region.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
     add_field(lowerer, &mut plan.fields, format!("local:{name}"), &local);
     plan.media.push(medium);
@@ -121,8 +126,14 @@ fn fill(
 
 /// Optical quantities of a medium at a point inside its region.
 struct Matter {
+    /// Nothing where negative; continued below 0 where the author cut it off, so that the place where it
+    /// ends can be found between two samples.
     density: ValueId,
-    scatter: [ValueId; 3],
+    /// The density as the author sees it: the same, or the sum over the feet of a tube.
+    shown: ValueId,
+    /// What the author calls its colour.
+    color: [ValueId; 3],
+    /// Coefficients per unit of density, never negative.
     scattering: [ValueId; 3],
     extinction: [ValueId; 3],
     /// The same where nothing else is asked for: shadow rays.
@@ -133,7 +144,14 @@ struct Matter {
 impl Matter {
     fn is_empty(&self, lowerer: &Lowerer<'_>) -> bool {
         let zero = |&v: &ValueId| lowerer.graph.constant(v) == Some(0.0);
-        self.extinction.iter().all(zero) && self.emission.iter().all(zero)
+        zero(&self.density) || self.extinction.iter().all(zero) && self.emission.iter().all(zero)
+    }
+
+    /// Coefficients times the density, per unit length.
+    fn times_density(&self, lowerer: &mut Lowerer<'_>, coefficients: &[ValueId]) -> Vec<ValueId> {
+        let zero = lowerer.graph.number(0.0);
+        let density = lowerer.graph.max(self.density, zero);
+        coefficients.iter().map(|&c| lowerer.graph.mul(density, c)).collect()
     }
 }
 
@@ -141,7 +159,7 @@ fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> L
     let zero = lowerer.graph.number(0.0);
     let density = lowerer.closure(block, "density", 1.0, 1)?;
     let density = lowerer.call(&density, &[Value::Local(Rc::clone(point))])?.scalar();
-    let density = lowerer.graph.max(density, zero);
+    let density = unclipped(&mut lowerer.graph, density);
     let density = conserved(lowerer, block, point, density)?;
     let mut coefficient = |key: &str, default: f64| -> Lowered<[ValueId; 3]> {
         let closure = lowerer.closure(block, key, default, 3)?;
@@ -153,14 +171,14 @@ fn matter(lowerer: &mut Lowerer<'_>, block: &Block, point: &Rc<LocalPoint>) -> L
     let emit = coefficient("emit", 0.0)?;
     let graph = &mut lowerer.graph;
     let total = [0, 1, 2].map(|i| graph.add(scatter[i], absorb[i]));
-    let extinction = total.map(|c| graph.mul(density, c));
     Ok(Matter {
         density,
-        scatter,
-        scattering: scatter.map(|c| graph.mul(density, c)),
-        extinction,
-        extinction_alone: extinction,
-        emission: emit.map(|c| graph.mul(density, c)),
+        shown: density,
+        color: scatter,
+        scattering: scatter,
+        extinction: total,
+        extinction_alone: total,
+        emission: emit,
     })
 }
 
@@ -179,17 +197,21 @@ fn add_up(
     // A loop of its own for each use: loops carry all of their sums.
     let sums = tube.sum_by_feet(lowerer, p, 9, span, |lowerer| {
         let matter = self::matter(lowerer, block, point)?;
-        Ok([matter.scattering, matter.extinction, matter.emission].concat())
+        Ok(matter.times_density(lowerer, &[matter.scattering, matter.extinction, matter.emission].concat()))
     })?;
     let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
     (matter.scattering, matter.extinction, matter.emission) = (three(0), three(3), three(6));
     let alone = tube.sum_by_feet(lowerer, p, 3, span, |lowerer| {
-        Ok(self::matter(lowerer, block, point)?.extinction.to_vec())
+        let matter = self::matter(lowerer, block, point)?;
+        Ok(matter.times_density(lowerer, &matter.extinction))
     })?;
     matter.extinction_alone = [alone[0], alone[1], alone[2]];
-    let density =
-        tube.sum_by_feet(lowerer, p, 1, span, |lowerer| Ok(vec![self::matter(lowerer, block, point)?.density]))?;
-    matter.density = density[0];
+    let one = lowerer.graph.number(1.0);
+    let density = tube.sum_by_feet(lowerer, p, 1, span, |lowerer| {
+        Ok(self::matter(lowerer, block, point)?.times_density(lowerer, &[one]))
+    })?;
+    // The densities are in the coefficients now.
+    (matter.density, matter.shown) = (one, density[0]);
     Ok(())
 }
 

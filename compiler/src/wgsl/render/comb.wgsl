@@ -14,8 +14,8 @@ struct Comb {
     own: array<f32, MEDIUM_SLOTS>,
 }
 
-fn node_distance(node: i32, step_size: f32) -> f32 {
-    return (f32(node) + 0.5) * step_size;
+fn node_distance(node: i32, step_size: f32, offset: f32) -> f32 {
+    return (f32(node) + offset) * step_size;
 }
 
 fn medium_word(medium: u32) -> u32 {
@@ -23,14 +23,14 @@ fn medium_word(medium: u32) -> u32 {
 }
 
 // Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-// inside are in the range or next to it.
-fn node_range(ray: Ray, medium: u32, step_size: f32, end: f32) -> vec2i {
+// inside are in the range or next to it, and so are the panels on both sides.
+fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> vec2i {
     let at = medium_word(medium);
     let reach = vec3f(1.01 * step_size);
     let span = slab(ray, word3(at + 1u) - reach, word3(at + 4u) + reach);
     let leave = min(span.leave, end);
     // Node numbers stay where f32 knows them and a half.
-    let first = min(max(floor((span.entry / step_size) - 0.5), 0.0), 4194304.0);
+    let first = min(max(floor((span.entry / step_size) - offset), 0.0), 4194304.0);
     let last = min(floor(max(leave, 0.0) / step_size), 4194304.0);
     let none = (span.entry > leave) | (vol_input[at] == 0.0);
     return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
@@ -47,15 +47,22 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
     comb.end = end;
+    let corrected = vol_input[AT_QUADRATURE] == CORRECTED;
+    let offset = select(0.5, 0.0, corrected);
     var whole = vec2i(0, -1);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let range = node_range(ray, medium, step_size, end);
+        let range = node_range(ray, medium, step_size, offset, end);
         comb.ranges[medium] = range;
         whole = range_union(whole, range);
     }
     comb.first = whole.x;
     comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        // Panels have no weights.
+        if (corrected) {
+            comb.own[medium] = FAR;
+            continue;
+        }
         let range = comb.ranges[medium];
         comb.before[medium] = wall(ray, medium, range, comb.first - 1, step_size, end);
         comb.own[medium] = wall(ray, medium, range, comb.first, step_size, end);
@@ -66,7 +73,7 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
 // Signed distance of a node from the nearest of: the medium's wall, the ray's two ends.
 fn wall(ray: Ray, medium: u32, range: vec2i, node: i32, step_size: f32, end: f32) -> f32 {
     var region = FAR;
-    let t = node_distance(node, step_size);
+    let t = node_distance(node, step_size, 0.5);
     let some = range.x <= range.y;
     if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
         let point = ray_at(ray, t);

@@ -1,7 +1,9 @@
 // What media along a ray add and take away.
 // Twin: runtime-cpu/src/render/medium.rs, which says why.
 
+// A medium at a point: density, and per unit of it.
 struct Interior {
+    density: f32,
     scattering: vec3f,
     extinction: vec3f,
     emission: vec3f,
@@ -10,27 +12,30 @@ struct Interior {
 struct Glow {
     light: vec3f,
     transmittance: vec3f,
-}
-
-struct Filling {
-    // Optical depth.
-    depth: vec3f,
-    // Light that starts at the node.
-    source: vec3f,
-    // Scattering of each medium times the length that the node stands for.
-    scatter: array<vec3f, MEDIUM_SLOTS>,
+    // The same two by every other node.
+    coarse_light: vec3f,
+    coarse_transmittance: vec3f,
 }
 
 // Follows the ray through the media up to its end.
 fn march(ray: Ray, end: f32) -> Glow {
-    var glow = Glow(vec3f(0.0), vec3f(1.0));
+    if (vol_input[AT_QUADRATURE] == CORRECTED) {
+        return march_panels(ray, end);
+    }
+    return march_nodes(ray, end);
+}
+
+fn clear_glow() -> Glow {
+    return Glow(vec3f(0.0), vec3f(1.0), vec3f(0.0), vec3f(1.0));
+}
+
+fn march_nodes(ray: Ray, end: f32) -> Glow {
+    var glow = clear_glow();
     var comb = new_comb(ray, end, vol_input[AT_STEP]);
     var weights: array<f32, MEDIUM_SLOTS>;
     for (var node = comb.first; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {
-            let sent = node_glow(ray, node_distance(node, comb.step), &weights);
-            glow.light += glow.transmittance * sent.light;
-            glow.transmittance = glow.transmittance * sent.transmittance;
+            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, 0.5), &weights));
         }
         // Go on while the ray still lets light through.
         if (largest(glow.transmittance) < STOP) {
@@ -40,69 +45,50 @@ fn march(ray: Ray, end: f32) -> Glow {
     return glow;
 }
 
-// Light that one node sends, and what it lets through.
-fn node_glow(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> Glow {
-    let point = ray_at(ray, t);
-    var filling = fill(point, weights);
-    let count = light_count();
-    for (var light = 0u; light < count; light++) {
-        let lamp = arriving(light, point);
-        let seen = node_visibility(lamp, point, t, &filling);
-        scatter_light(lamp, seen, ray.direction, &filling);
-    }
-    return Glow(filling.source * mean_decay3(filling.depth), decay3(filling.depth));
+// Light that a node or panel sends, and its optical depth.
+struct Chunk {
+    sent: vec3f,
+    depth: vec3f,
 }
 
-// Evaluates the media at a node; adds their own light.
-fn fill(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> Filling {
-    var filling: Filling;
-    filling.depth = vec3f(0.0);
-    filling.source = vec3f(0.0);
+// Light and optical depth of one node.
+fn node_chunk(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> Chunk {
+    let point = ray_at(ray, t);
+    var depth = vec3f(0.0);
+    var scatter: array<vec3f, MEDIUM_SLOTS>;
+    var source: array<vec3f, MEDIUM_SLOTS>;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let weight = (*weights)[medium];
-        filling.scatter[medium] = vec3f(0.0);
+        scatter[medium] = vec3f(0.0);
+        source[medium] = vec3f(0.0);
         if (weight > 0.0) {
             let interior = medium_interior(medium, point);
-            filling.depth += interior.extinction * weight;
-            filling.scatter[medium] = interior.scattering * weight;
-            filling.source += interior.emission * weight;
+            let mass = max(interior.density, 0.0) * weight;
+            depth += interior.extinction * mass;
+            scatter[medium] = interior.scattering * mass;
+            source[medium] = interior.emission * mass;
         }
     }
-    return filling;
-}
-
-// Fraction of a lamp's light that arrives at a node, if a medium needs to know.
-fn node_visibility(lamp: Arriving, point: vec3f, t: f32, filling: ptr<function, Filling>) -> vec3f {
-    var asked = false;
+    light_place(ray, t, &scatter, &source);
+    // Add up what they send.
+    var sent = vec3f(0.0);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let scatters = any((*filling).scatter[medium] > vec3f(0.0));
-        asked = asked | (scatters & (vol_input[medium_word(medium)] == SHADOWED));
+        sent += source[medium] * mean_decay3(depth);
     }
-    if (asked & lamp.shadows) {
-        return visibility(Ray(point, lamp.direction), lamp.distance, shadow_bias(t));
-    }
-    return vec3f(1.0);
+    return Chunk(sent, depth);
 }
 
-// Adds the light of one lamp, scattered towards the eye.
-fn scatter_light(lamp: Arriving, seen: vec3f, direction: vec3f, filling: ptr<function, Filling>) {
-    let angles = turn(lamp.direction, direction);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let lighting = vol_input[medium_word(medium)];
-        let scatter = (*filling).scatter[medium];
-        if (any(scatter > vec3f(0.0)) & (lighting > UNLIT)) {
-            // Add what arrives and is turned towards the eye.
-            let phase = medium_phase(medium, angles.x, angles.y);
-            let arrives = select(seen, vec3f(1.0), lighting == UNSHADOWED);
-            (*filling).source += (scatter * phase) * (lamp.irradiance * arrives);
-        }
+// Adds a node or panel to those before it.
+fn gather(before: Glow, node: i32, chunk: Chunk) -> Glow {
+    var glow = before;
+    let decay = decay3(chunk.depth);
+    glow.light += glow.transmittance * chunk.sent;
+    glow.transmittance = glow.transmittance * decay;
+    // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
+    if ((node % 2) == 0) {
+        let twice = chunk.sent * (vec3f(1.0) + decay);
+        glow.coarse_light += glow.coarse_transmittance * twice;
+        glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
     }
-}
-
-// 1 - cos and 1 + cos of the angle by which light from a lamp turns towards the eye, without
-// cancellation.
-fn turn(toward: vec3f, direction: vec3f) -> vec2f {
-    let apart = toward - direction;
-    let together = toward + direction;
-    return vec2f(0.5 * dot3(apart, apart), 0.5 * dot3(together, together));
+    return glow;
 }

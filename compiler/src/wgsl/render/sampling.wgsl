@@ -11,6 +11,8 @@ struct Radiance {
     color: vec3f,
     transmittance: vec3f,
     depth: f32,
+    // How far the colour is from the one by every other node of the media.
+    doubt: f32,
 }
 
 struct Mean {
@@ -20,6 +22,7 @@ struct Mean {
     depth: f32,
     color_spread: f32,
     transmittance_spread: f32,
+    doubt: f32,
 }
 
 fn place_in_pixel(index: u32) -> vec2f {
@@ -38,9 +41,11 @@ fn add_sample(old: Mean, sample: Radiance) -> Mean {
         mean.color = sample.color;
         mean.transmittance = sample.transmittance;
         mean.depth = sample.depth;
+        mean.doubt = sample.doubt;
         return mean;
     }
     let share = 1.0 / f32(mean.count);
+    mean.doubt = mean.doubt + ((sample.doubt - mean.doubt) * share);
     let color = sample.color - mean.color;
     mean.color = mean.color + (color * share);
     mean.color_spread = mean.color_spread + dot3(color, sample.color - mean.color);

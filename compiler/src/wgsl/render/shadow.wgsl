@@ -53,13 +53,20 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
 
 // Integral of the extinction along the ray.
 fn optical_depth(ray: Ray, end: f32) -> vec3f {
+    if (vol_input[AT_QUADRATURE] == CORRECTED) {
+        return depth_by_panels(ray, end);
+    }
+    return depth_by_nodes(ray, end);
+}
+
+fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
     var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
     var weights: array<f32, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
     for (var node = comb.first; node <= comb.last; node++) {
         // Optical depth of each node, all media together.
         if (weigh(ray, &comb, node, &weights)) {
-            depth += node_depth(ray_at(ray, node_distance(node, comb.step)), &weights);
+            depth += node_depth(ray_at(ray, node_distance(node, comb.step, 0.5)), &weights);
         }
         // Go on while the ray is not dark yet.
         if (smallest(depth) > OPAQUE) {
@@ -74,7 +81,58 @@ fn node_depth(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) ->
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let weight = (*weights)[medium];
         if (weight > 0.0) {
-            depth += medium_extinction(medium, point) * weight;
+            let matter = medium_extinction(medium, point);
+            depth += matter.yzw * (max(matter.x, 0.0) * weight);
+        }
+    }
+    return depth;
+}
+
+fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
+    var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
+    // Density and extinction of each medium at the node before.
+    var before: array<vec4f, MEDIUM_SLOTS>;
+    var depth = vec3f(0.0);
+    // The panel before the first one is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node++) {
+        // Optical depth of each panel, all media together.
+        depth += panel_depth(ray, &comb, node, &before);
+        // Go on while the ray is not dark yet.
+        if (smallest(depth) > OPAQUE) {
+            break;
+        }
+    }
+    return depth;
+}
+
+fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<function, array<vec4f, MEDIUM_SLOTS>>) -> vec3f {
+    let step_size = (*comb).step;
+    let t = vec2f(panel_node(node, step_size, (*comb).end), panel_node(node + 1, step_size, (*comb).end));
+    var depth = vec3f(0.0);
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let own = (*comb).own[medium];
+        let next = panel_region(ray, medium, (*comb).ranges[medium], node + 1, t.y, step_size);
+        (*comb).own[medium] = next;
+        var first = (*before)[medium];
+        var last = vec4f(0.0);
+        if (next < 0.0) {
+            last = medium_extinction(medium, ray_at(ray, t.y));
+        }
+        (*before)[medium] = last;
+        if ((node >= (*comb).first) & (t.x < t.y) & ((own < 0.0) | (next < 0.0))) {
+            var stretch = t;
+            if ((own < 0.0) != (next < 0.0)) {
+                let leaves = own < 0.0;
+                let start = vec2f(t.x, own);
+                let stop = vec2f(t.y, next);
+                let wall = find_wall(ray, medium, select(stop, start, leaves), select(start, stop, leaves));
+                let matter = medium_extinction(medium, ray_at(ray, wall));
+                first = select(matter, first, leaves);
+                last = select(last, matter, leaves);
+                stretch = select(vec2f(wall, t.y), vec2f(t.x, wall), leaves);
+            }
+            let masses = panel_masses(stretch.y - stretch.x, first.x, last.x);
+            depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }
     }
     return depth;

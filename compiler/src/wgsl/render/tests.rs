@@ -1,5 +1,5 @@
 use super::*;
-use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Sampling, Stride};
+use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Quadrature, Sampling, Stride};
 use crate::ir::text;
 use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
 use vol_language::source::Span;
@@ -13,7 +13,8 @@ fn program(objects: usize, media: usize) -> Program {
         text::parse_function(&body).expect("well-formed text")
     };
     let mut module = text::parse_module("frame(1) {\n%0 = input 0\nreturn %0\n}").expect("well-formed text");
-    module.functions = [(3, 1), (3, 3), (3, 10), (3, 9), (2, 1)].map(|(i, o)| function(i, o)).to_vec();
+    module.functions =
+        [(3, 1), (3, 3), (3, 10), (3, 10), (2, 1), (3, 4)].map(|(i, o)| function(i, o)).to_vec();
     let object = Object {
         name: "ball".to_owned(),
         distance: FunctionId(0),
@@ -30,7 +31,7 @@ fn program(objects: usize, media: usize) -> Program {
         name: "gas".to_owned(),
         region: FunctionId(0),
         interior: FunctionId(3),
-        extinction: FunctionId(1),
+        extinction: FunctionId(5),
         phase: FunctionId(4),
         lighting: Lighting::Shadowed,
         extent: Extent::Unbounded,
@@ -118,19 +119,24 @@ fn modules_are_accepted() {
 #[test]
 fn words_stand_where_the_shader_looks() {
     let program = program(2, 1);
-    let job =
-        Job { size: [40, 30], step: 0.1, shadow_step: 0.2, sampling: Sampling { most: 33, tolerance: 0.25 } };
+    let job = Job {
+        size: [40, 30],
+        step: 0.1,
+        shadow_step: 0.2,
+        quadrature: Quadrature::Corrected,
+        sampling: Sampling { most: 33, tolerance: 0.25 },
+    };
     let words = frame_words(&program, &frame(&program), &job, [8, 16, 24, 32], 5);
     let words: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
     assert_eq!(words[..8], [8.0, 16.0, 24.0, 32.0, 40.0, 30.0, 0.1, 0.2]);
     assert_eq!(words[8..24], [1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15., 1.]);
-    assert_eq!(words[24..27], [33.0, 0.25, 5.0]);
+    assert_eq!(words[24..28], [33.0, 0.25, 5.0, 1.0]);
     let text = glue(&program);
     let place = |name: &str| -> usize {
         let line = text.lines().find_map(|line| line.strip_prefix(&format!("const {name}: u32 = ")));
         line.and_then(|line| line.strip_suffix("u;")?.parse().ok()).expect("a constant of the glue")
     };
-    assert_eq!(place("AT_OBJECTS"), 27);
+    assert_eq!(place("AT_OBJECTS"), 28);
     let (objects, media, lights) = (place("AT_OBJECTS"), place("AT_MEDIA"), place("AT_LIGHTS"));
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
@@ -169,11 +175,14 @@ fn depth_without_a_surface_is_infinite() {
     let second = ([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0], [4, 5, 4_000_000_000, 2, 2]);
     let spreads = [0.5_f32.to_bits(); 2];
     let words = [first, second]
-        .map(|(floats, counts)| [&floats.map(f32::to_bits)[..], &counts[..], &spreads[..]].concat())
+        .map(|(floats, counts)| {
+            [&floats.map(f32::to_bits)[..], &counts[..], &spreads[..], &[0.25_f32.to_bits()]].concat()
+        })
         .concat();
     let image = unpack(2, 1, &words);
     assert_eq!(counts(&words), Counts { camera_rays: 3, rays: 5, samples: 7, evaluations: 4_000_000_003 });
     assert_eq!(image.pixels[0].depth, f32::INFINITY);
     assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
     assert_eq!(image.pixels[1].depth, 7.0);
+    assert_eq!(image.pixels[1].error, 0.25);
 }

@@ -2,7 +2,7 @@
 
 use super::support::{Body, Gas, MATT, World, constant, glowing, mixed, norm, toward};
 use std::f64::consts::PI;
-use vol_compiler::frame::Aabb;
+use vol_compiler::frame::{Aabb, Quadrature};
 use vol_compiler::program::Lighting;
 
 const SIZE: u32 = 8;
@@ -34,7 +34,8 @@ fn slab_absorbs_by_beer_lambert() {
     let mut world = slab(0.0, 0.0, Lighting::None);
     world.frame.background = [1.0, 1.0, 1.0];
     for step in [0.031, 0.1, 0.137, 0.5, 0.77] {
-        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+        for (index, pixel) in world.both(SIZE, step).iter().flat_map(|image| image.pixels.iter().enumerate())
+        {
             let through = |extinction: f64| (-extinction * chord(index)).exp();
             assert_close(pixel.transmittance, through, 1e-5);
             assert_close(pixel.color, through, 1e-5);
@@ -47,7 +48,8 @@ fn slab_absorbs_by_beer_lambert() {
 fn slab_emits() {
     let world = slab(0.0, 0.4, Lighting::None);
     for step in [0.031, 0.137, 0.5] {
-        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+        for (index, pixel) in world.both(SIZE, step).iter().flat_map(|image| image.pixels.iter().enumerate())
+        {
             assert_close(
                 pixel.color,
                 |extinction| 0.4 * -(-extinction * chord(index)).exp_m1() / extinction,
@@ -61,7 +63,7 @@ fn slab_emits() {
 fn clear_gas_emits() {
     let mut world = World::new([0.0, 0.0, 4.0], SLOPE as f32);
     world.medium(Gas::uniform([3.0, 3.0, 1.0], [0.0; 3], [0.0; 3], [0.5; 3], Lighting::None));
-    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+    for (index, pixel) in world.both(SIZE, 0.137).iter().flat_map(|image| image.pixels.iter().enumerate()) {
         assert!((f64::from(pixel.color[0]) - 0.5 * chord(index)).abs() < 1e-5);
         assert_eq!(pixel.transmittance, [1.0; 3]);
     }
@@ -72,7 +74,7 @@ fn slab_scatters_unshadowed() {
     let mut world = slab(0.3, 0.0, Lighting::Unshadowed);
     world.sun([0.6, 0.0, 0.8], [5.0, 5.0, 5.0]);
     let source = 0.3 * 5.0 / (4.0 * PI);
-    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+    for (index, pixel) in world.both(SIZE, 0.137).iter().flat_map(|image| image.pixels.iter().enumerate()) {
         assert_close(
             pixel.color,
             |extinction| source * -(-extinction * chord(index)).exp_m1() / extinction,
@@ -84,8 +86,9 @@ fn slab_scatters_unshadowed() {
 /// The light is behind the eye, so a point at depth x sees it through x of gas.
 #[test]
 fn slab_shadows_itself_to_second_order() {
-    let worst = |step: f32| {
+    let worst = |quadrature: Quadrature, step: f32| {
         let mut world = slab(0.3, 0.0, Lighting::Shadowed);
+        world.quadrature = quadrature;
         world.sun([0.0, 0.0, 1.0], [5.0, 5.0, 5.0]);
         let mut worst: f64 = 0.0;
         for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
@@ -98,9 +101,11 @@ fn slab_shadows_itself_to_second_order() {
         }
         worst
     };
-    let (coarse, fine) = (worst(0.1), worst(0.025));
-    assert!(coarse < 4e-2, "{coarse:e}");
-    assert!(fine < 0.1 * coarse, "{coarse:e} {fine:e}");
+    for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
+        let (coarse, fine) = (worst(quadrature, 0.1), worst(quadrature, 0.025));
+        assert!(coarse < 4e-2, "{quadrature:?} {coarse:e}");
+        assert!(fine < 0.1 * coarse, "{quadrature:?} {coarse:e} {fine:e}");
+    }
 }
 
 /// In an oven of radiance 1 every gas that glows at that temperature is invisible.
@@ -110,7 +115,7 @@ fn furnace_is_white() {
     world.frame.background = [1.0; 3];
     world.medium(Gas::uniform([1.0, 0.7, 0.9], [0.0; 3], [0.5, 3.0, 9.0], [0.5, 3.0, 9.0], Lighting::None));
     world.medium(Gas::uniform([0.3, 1.7, 1.9], [0.0; 3], [2.0, 0.1, 0.7], [2.0, 0.1, 0.7], Lighting::None));
-    for pixel in world.render(24, 0.173).pixels {
+    for pixel in world.both(24, 0.173).into_iter().flat_map(|image| image.pixels) {
         for channel in pixel.color {
             assert!((channel - 1.0).abs() < 1e-5, "{channel}");
         }
@@ -121,7 +126,7 @@ fn furnace_is_white() {
 fn surface_stands_in_gas() {
     let mut world = slab(0.0, 0.0, Lighting::None);
     world.ball([0.0, 0.0, -5.0], 5.0, glowing([1.0; 3]));
-    for (index, pixel) in world.render(SIZE, 0.137).pixels.iter().enumerate() {
+    for (index, pixel) in world.both(SIZE, 0.137).iter().flat_map(|image| image.pixels.iter().enumerate()) {
         // The ball's top is at z = 0: solve |4 z + t d - c| = 5 for the point that is seen.
         let direction = toward(SIZE, SLOPE, index);
         let (a, b, c) = (norm(direction).powi(2), -9.0, 81.0 - 25.0);
@@ -138,7 +143,8 @@ fn eye_inside_gas() {
     let mut world = slab(0.0, 0.0, Lighting::None);
     world.frame.camera.origin = [0.0, 0.0, 0.63];
     for step in [0.05, 0.137, 0.5] {
-        for (index, pixel) in world.render(SIZE, step).pixels.iter().enumerate() {
+        for (index, pixel) in world.both(SIZE, step).iter().flat_map(|image| image.pixels.iter().enumerate())
+        {
             let path = 1.63 * norm(toward(SIZE, SLOPE, index));
             assert_close(pixel.transmittance, |extinction| (-extinction * path).exp(), 1e-5);
         }
@@ -148,11 +154,11 @@ fn eye_inside_gas() {
 #[test]
 fn boxes_only_skip() {
     let mut world = mixed();
-    let tight = world.render(20, 0.11);
+    let tight = world.both(20, 0.11);
     for medium in &mut world.frame.media {
         medium.bounds = Aabb { lo: medium.bounds.lo.map(|x| x - 3.0), hi: medium.bounds.hi.map(|x| x + 2.0) };
     }
-    assert_eq!(world.render(20, 0.11), tight);
+    assert_eq!(world.both(20, 0.11), tight);
 }
 
 /// The boxes of a grid over a box, without those that a ball inside does not meet.
@@ -179,7 +185,14 @@ fn cells(bounds: Aabb, parts: u8) -> Vec<Aabb> {
 fn cells_only_skip() {
     let mut world = mixed();
     let ball = world.frame.media[1].bounds;
-    for step in [0.03, 0.11, 0.4] {
+    for (step, quadrature) in [
+        (0.03, Quadrature::Midpoint),
+        (0.11, Quadrature::Midpoint),
+        (0.4, Quadrature::Midpoint),
+        (0.03, Quadrature::Corrected),
+        (0.4, Quadrature::Corrected),
+    ] {
+        world.quadrature = quadrature;
         world.frame.media[1].cells = vec![ball];
         let whole = world.render_counted(20, step);
         world.frame.media[1].cells = cells(ball, 7);
@@ -195,9 +208,9 @@ fn cells_only_skip() {
 fn gas_without_bounds_ends() {
     let mut world = slab(0.0, 0.0, Lighting::None);
     world.frame.media[0].bounds = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
-    let image = world.render(4, 0.1);
+    let images = world.both(4, 0.1);
     world.frame.media[0].bounds = Aabb { lo: [-3.0, -3.0, -1.0], hi: [3.0, 3.0, 1.0] };
-    assert_eq!(image, world.render(4, 0.1));
+    assert_eq!(images, world.both(4, 0.1));
 }
 
 /// Gas between a matt wall and the light weakens it as it weakens the wall for the eye.
@@ -210,7 +223,7 @@ fn gas_casts_shadows_on_surfaces() {
     let bounds = Aabb { lo: [-9.0, -9.0, -3.0], hi: [9.0, 9.0, -2.0] };
     world.solid(wall, MATT, bounds, 1.0);
     world.sun([0.0, 0.0, 1.0], [1.0; 3]);
-    for (index, pixel) in world.render(SIZE, 0.1).pixels.iter().enumerate() {
+    for (index, pixel) in world.both(SIZE, 0.1).iter().flat_map(|image| image.pixels.iter().enumerate()) {
         assert_close(pixel.color, |extinction| (-extinction * (2.0 + chord(index))).exp(), 1e-5);
     }
 }

@@ -7,7 +7,7 @@ use super::super::{Batches, Method, Stats, TubeBounds, Watch, render_by, render_
 use super::support::{Gas, World, constant, mixed, norm, sphere, toward};
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
-use vol_compiler::frame::{Aabb, Image, Job, LightFrame, Sampling};
+use vol_compiler::frame::{Aabb, Image, Job, LightFrame, Quadrature, Sampling};
 use vol_compiler::program::Lighting;
 
 const SIZE: u32 = 8;
@@ -32,7 +32,7 @@ fn by(world: &World, method: Method, job: &Job) -> (Image, Stats) {
 }
 
 fn job(step: f32, samples: u32) -> Job {
-    Job { size: [SIZE; 2], step, shadow_step: step, sampling: Sampling::uniform(samples) }
+    Job { size: [SIZE; 2], step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::uniform(samples) }
 }
 
 fn fixed(jitter: Option<u64>) -> Method {

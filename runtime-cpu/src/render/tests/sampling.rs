@@ -6,7 +6,7 @@ use super::support::{World, bits, mixed};
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use vol_compiler::frame::{Image, Job, Sampling};
+use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 
 /// The first places in f64.
 fn places(count: u32) -> Vec<[f64; 2]> {
@@ -115,7 +115,7 @@ fn an_edge_covers_its_area() {
 }
 
 fn job(size: [u32; 2], sampling: Sampling) -> Job {
-    Job { size, step: 0.11, shadow_step: 0.2, sampling }
+    Job { size, step: 0.11, shadow_step: 0.2, quadrature: Quadrature::Midpoint, sampling }
 }
 
 fn expose(world: &World, job: &Job, batches: Batches) -> (Image, Stats) {

@@ -2,7 +2,7 @@
 
 use super::super::Batches;
 use super::support::{Body, MATT, World, floor, glowing, norm, sphere, toward};
-use vol_compiler::frame::{Aabb, Job, LightFrame, Sampling};
+use vol_compiler::frame::{Aabb, Job, LightFrame, Quadrature, Sampling};
 use vol_compiler::ir::Function;
 use vol_compiler::ops::Op;
 
@@ -181,7 +181,13 @@ fn horizon_is_straight() {
     let everywhere = Aabb { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
     world.solid(floor(0.0), glowing([1.0; 3]), everywhere, 1.0);
     let image = world.render_with(
-        &Job { size: [32, 64], step: 1.0, shadow_step: 1.0, sampling: Sampling::CENTRE },
+        &Job {
+            size: [32, 64],
+            step: 1.0,
+            shadow_step: 1.0,
+            quadrature: Quadrature::Midpoint,
+            sampling: Sampling::CENTRE,
+        },
         Batches::DEFAULT,
     );
     for (index, pixel) in image.pixels.iter().enumerate() {

@@ -3,7 +3,8 @@
 use super::super::{Batches, Stats, Watch, render_batches};
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{
-    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Sampling, Stride,
+    Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Quadrature, Sampling,
+    Stride,
 };
 use vol_compiler::ir::{Function, FunctionId, Inst, Module, Number, ValueId};
 use vol_compiler::ops::Op;
@@ -113,6 +114,7 @@ pub(super) fn cuboid(half: [f64; 3]) -> Function {
 pub(super) struct World {
     pub(super) program: Program,
     pub(super) frame: Frame,
+    pub(super) quadrature: Quadrature,
 }
 
 /// What a test medium is made of.
@@ -136,8 +138,8 @@ impl Gas {
     ) -> Self {
         Self {
             region: cuboid(half),
-            interior: constant("interior", 3, &[scattering, extinction, emission].concat()),
-            extinction: constant("extinction", 3, &extinction),
+            interior: constant("interior", 3, &[&[1.0][..], &scattering, &extinction, &emission].concat()),
+            extinction: constant("extinction", 3, &[&[1.0][..], &extinction].concat()),
             phase: constant("phase", 2, &[0.25 / std::f64::consts::PI]),
             lighting,
             bounds: Aabb { lo: half.map(|x| -x as f32), hi: half.map(|x| x as f32) },
@@ -189,7 +191,7 @@ impl World {
             background: [0.0; 3],
             bounds: Aabb { lo: [-1.0; 3], hi: [1.0; 3] },
         };
-        Self { program, frame }
+        Self { program, frame, quadrature: Quadrature::Midpoint }
     }
 
     fn function(&mut self, function: Function) -> FunctionId {
@@ -214,7 +216,6 @@ impl World {
             gradient,
             surface,
             shows_normals: false,
-            steady: true,
             bounds,
             stride: Stride::Scale(safe_scale),
         });
@@ -225,6 +226,7 @@ impl World {
             steepness: None,
             surface,
             shows_normals: false,
+            steady: true,
             extent: Extent::Unbounded,
             enabled: NOWHERE,
             span: Default::default(),
@@ -273,17 +275,26 @@ impl World {
 
     /// Renders a square picture.
     pub(super) fn render(&self, size: u32, step: f32) -> Image {
-        self.render_with(
-            &Job { size: [size, size], step, shadow_step: step, sampling: Sampling::CENTRE },
-            Batches::DEFAULT,
-        )
+        self.render_with(&self.job(size, step), Batches::DEFAULT)
+    }
+
+    /// Renders a square picture with both quadratures.
+    pub(super) fn both(&self, size: u32, step: f32) -> [Image; 2] {
+        [Quadrature::Midpoint, Quadrature::Corrected]
+            .map(|quadrature| self.render_with(&Job { quadrature, ..self.job(size, step) }, Batches::DEFAULT))
+    }
+
+    /// The job of a square picture.
+    fn job(&self, size: u32, step: f32) -> Job {
+        let (size, quadrature) = ([size, size], self.quadrature);
+        Job { size, step, shadow_step: step, quadrature, sampling: Sampling::CENTRE }
     }
 
     /// Renders a square picture and counts.
     pub(super) fn render_counted(&self, size: u32, step: f32) -> (Image, Stats) {
         let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
-        let job = Job { size: [size, size], step, shadow_step: step, sampling: Sampling::CENTRE };
-        render_batches(&self.program, &self.frame, &job, Batches::DEFAULT, &watch).expect("not cancelled")
+        render_batches(&self.program, &self.frame, &self.job(size, step), Batches::DEFAULT, &watch)
+            .expect("not cancelled")
     }
 
     /// Renders with batches of other sizes.
@@ -346,28 +357,17 @@ pub(super) fn mixed() -> World {
 
 /// A ball of gas whose density falls to 0 at its wall, with a phase function that is not constant.
 fn fog(centre: [f64; 3], radius: f64) -> Gas {
-    let density = |body: &mut Body| {
+    let with_density = |name: &str, factors: &[f64]| {
+        let mut body = Body::new(name, 3);
         let from = body.relative_to(centre);
         let length = body.length(from);
-        let (radius, zero) = (body.number(radius), body.number(0.0));
-        let depth = body.apply(Op::Sub, &[radius, length]);
-        body.apply(Op::Max, &[depth, zero])
+        let radius = body.number(radius);
+        let mut outputs = vec![body.apply(Op::Sub, &[radius, length])];
+        outputs.extend(factors.iter().map(|&factor| body.number(factor)));
+        body.finish(&outputs)
     };
-    let scaled = |body: &mut Body, density: ValueId, factors: &[f64]| -> Vec<ValueId> {
-        let product = |&factor: &f64| {
-            let factor = body.number(factor);
-            body.apply(Op::Mul, &[density, factor])
-        };
-        factors.iter().map(product).collect()
-    };
-    let mut interior = Body::new("interior", 3);
-    let amount = density(&mut interior);
-    let outputs = scaled(&mut interior, amount, &[2.0, 1.8, 1.5, 2.2, 2.2, 2.2, 0.0, 0.0, 0.3]);
-    let interior = interior.finish(&outputs);
-    let mut extinction = Body::new("extinction", 3);
-    let amount = density(&mut extinction);
-    let outputs = scaled(&mut extinction, amount, &[2.2, 2.2, 2.2]);
-    let extinction = extinction.finish(&outputs);
+    let interior = with_density("interior", &[2.0, 1.8, 1.5, 2.2, 2.2, 2.2, 0.0, 0.0, 0.3]);
+    let extinction = with_density("extinction", &[2.2, 2.2, 2.2]);
     // (1 + cos)^2, forward; its integral over the sphere is 16 pi / 3.
     let mut phase = Body::new("phase", 2);
     let squared = phase.apply(Op::Mul, &[phase.input(1), phase.input(1)]);

@@ -1,0 +1,145 @@
+// What media along a ray add and take away, by panel.wgsl.
+// Twin: runtime-cpu/src/render/corrected.rs, which says why.
+
+// Ends of panels: the node before, the node after, a wall between them.
+const BEFORE: u32 = 0u;
+const AFTER: u32 = 1u;
+const WALL: u32 = 2u;
+const END_SLOTS: u32 = 3u * MEDIUM_SLOTS;
+
+// The panels between two nodes.
+struct Panels {
+    // Each medium at each kind of end.
+    interiors: array<Interior, END_SLOTS>,
+    // Light sent towards the eye there, per unit of density.
+    sources: array<vec3f, END_SLOTS>,
+    // Distances of the walls.
+    walls: array<f32, MEDIUM_SLOTS>,
+    // Kinds of the two ends of each medium's panel.
+    ends: array<vec2u, MEDIUM_SLOTS>,
+    // Integral of the density that each end stands for.
+    masses: array<vec2f, MEDIUM_SLOTS>,
+    depth: vec3f,
+    some: bool,
+    // Whether the sources at the node before are known.
+    lit: bool,
+}
+
+fn march_panels(ray: Ray, end: f32) -> Glow {
+    var glow = clear_glow();
+    var comb = new_comb(ray, end, vol_input[AT_STEP]);
+    var panels: Panels;
+    panels.lit = false;
+    // The panel before the first one is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node++) {
+        let t = vec2f(panel_node(node, comb.step, end), panel_node(node + 1, comb.step, end));
+        find_panels(ray, &comb, node, t, &panels);
+        var lit_after = false;
+        if (panels.some) {
+            lit_after = light_ends(ray, t, &panels);
+            glow = gather(glow, node, Chunk(panels_sent(&panels), panels.depth));
+        }
+        // Go on while the ray still lets light through.
+        if (largest(glow.transmittance) < STOP) {
+            break;
+        }
+        panels.lit = lit_after;
+        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+            panels.interiors[medium] = panels.interiors[MEDIUM_SLOTS + medium];
+            panels.sources[medium] = panels.sources[MEDIUM_SLOTS + medium];
+        }
+    }
+    return glow;
+}
+
+// Finds the panels after a node and their optical depths, all media together.
+fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels: ptr<function, Panels>) {
+    (*panels).depth = vec3f(0.0);
+    (*panels).some = false;
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let own = (*comb).own[medium];
+        let next = panel_region(ray, medium, (*comb).ranges[medium], node + 1, t.y, (*comb).step);
+        (*comb).own[medium] = next;
+        let at = (AFTER * MEDIUM_SLOTS) + medium;
+        (*panels).interiors[at] = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+        if (next < 0.0) {
+            (*panels).interiors[at] = medium_interior(medium, ray_at(ray, t.y));
+        }
+        var masses = vec2f(0.0);
+        var ends = vec2u(BEFORE, AFTER);
+        if ((node >= (*comb).first) & (t.x < t.y) & ((own < 0.0) | (next < 0.0))) {
+            var stretch = t;
+            if ((own < 0.0) != (next < 0.0)) {
+                let leaves = own < 0.0;
+                let start = vec2f(t.x, own);
+                let stop = vec2f(t.y, next);
+                let wall = find_wall(ray, medium, select(stop, start, leaves), select(start, stop, leaves));
+                (*panels).interiors[(WALL * MEDIUM_SLOTS) + medium] = medium_interior(medium, ray_at(ray, wall));
+                (*panels).walls[medium] = wall;
+                ends = select(vec2u(WALL, AFTER), vec2u(BEFORE, WALL), leaves);
+                stretch = select(vec2f(wall, t.y), vec2f(t.x, wall), leaves);
+            }
+            let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
+            let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
+            masses = panel_masses(stretch.y - stretch.x, first.density, last.density);
+            (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
+        }
+        (*panels).ends[medium] = ends;
+        (*panels).masses[medium] = masses;
+        (*panels).some = (*panels).some | any(masses > vec2f(0.0));
+    }
+}
+
+// Lights the ends of panels with matter; whether those at the node after are among them.
+fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
+    var lit_after = false;
+    for (var place = 0u; place < (WALL + MEDIUM_COUNT); place++) {
+        let kind = min(place, WALL);
+        var distance = select(t.y, t.x, kind == BEFORE);
+        var wanted = false;
+        var scatter: array<vec3f, MEDIUM_SLOTS>;
+        var source: array<vec3f, MEDIUM_SLOTS>;
+        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+            // Media share nodes; each has a wall of its own.
+            let ends = (*panels).ends[medium];
+            let own = (kind != WALL) | (medium == (place - WALL));
+            let asks = own & any(ends == vec2u(kind)) & any((*panels).masses[medium] > vec2f(0.0));
+            wanted = wanted | asks;
+            scatter[medium] = vec3f(0.0);
+            source[medium] = vec3f(0.0);
+            if ((kind != WALL) | asks) {
+                let interior = (*panels).interiors[(kind * MEDIUM_SLOTS) + medium];
+                scatter[medium] = interior.scattering;
+                source[medium] = interior.emission;
+                distance = select(distance, (*panels).walls[medium], kind == WALL);
+            }
+        }
+        if (wanted & !((kind == BEFORE) & (*panels).lit)) {
+            light_place(ray, distance, &scatter, &source);
+            lit_after = lit_after | (kind == AFTER);
+            for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+                if ((kind != WALL) | (medium == (place - WALL))) {
+                    (*panels).sources[(kind * MEDIUM_SLOTS) + medium] = source[medium];
+                }
+            }
+        }
+    }
+    return lit_after;
+}
+
+// Adds up what the panels send.
+fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
+    let depth = (*panels).depth;
+    var sent = vec3f(0.0);
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let masses = (*panels).masses[medium];
+        if (any(masses > vec2f(0.0))) {
+            let ends = (*panels).ends[medium];
+            let start = (*panels).sources[(ends.x * MEDIUM_SLOTS) + medium];
+            let change = (*panels).sources[(ends.y * MEDIUM_SLOTS) + medium] - start;
+            let steady = start * mean_decay3(depth);
+            sent += (steady + (change * decay_moment3(depth))) * (masses.x + masses.y);
+        }
+    }
+    return sent;
+}

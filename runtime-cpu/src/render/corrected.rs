@@ -1,0 +1,81 @@
+//! What media along a ray add and take away, by [`super::panel`].
+//!
+//! In a panel the source (light sent per unit of density) changes linearly with the optical depth `x`, from
+//! `s0` to `s1`: `L += T mass (s0 phi + (s1 - s0) psi)`, `phi = (1 - exp(-x)) / x`, `psi = (phi - exp(-x)) / x`
+//! (algorithms.md §5.1), of all media with the same `x`. Nothing is divided by the extinction: a gas that
+//! only glows is nothing special.
+//!
+//! Twin: `compiler/src/wgsl/render/corrected.wgsl`.
+
+use super::camera::Ray;
+use super::comb::{Combs, Cursor};
+use super::fields::Fields;
+use super::medium::{Chunk, Glow};
+use super::panel::{Panel, Panels};
+use super::scatter::{Filling, scatters};
+use super::scene::Integrator;
+use crate::real::{Real, add, mul, scale, sub};
+
+/// Places of the colours among the outputs of [`vol_compiler::program::Medium::interior`].
+const SCATTERING: usize = 1;
+const EXTINCTION: usize = 4;
+const EMISSION: usize = 7;
+
+impl<F: Fields> Integrator<'_, F> {
+    /// Light and optical depth of the next panels.
+    pub(super) fn panel_chunk(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+        glows: &[Glow<F::Real>],
+    ) -> Chunk<F::Real> {
+        let mut chunk = Chunk::new(active.len() * self.batches.nodes as usize);
+        // Find the panels and their optical depths, all media together.
+        let mut all = Vec::with_capacity(self.scene.media.len());
+        for medium in 0..self.scene.media.len() {
+            let interior = self.scene.media[medium].interior;
+            let panels: Panels<_, 10> = self.panels(medium, interior, rays, combs, active);
+            self.stats.medium_samples += panels.places.len() as u64;
+            for panel in &panels.list {
+                chunk.depth[panel.slot] = add(chunk.depth[panel.slot], panels.depth(panel, EXTINCTION));
+            }
+            all.push(panels);
+        }
+        self.transmit(active, glows, &mut chunk);
+        // Light their ends.
+        let (mut fillings, mut lists) = (Vec::new(), Vec::new());
+        for (medium, panels) in all.into_iter().enumerate() {
+            let (filling, list) = filling(medium, panels, &chunk);
+            fillings.push(filling);
+            lists.push(list);
+        }
+        self.light_places(rays, active, &mut fillings);
+        // Add up what they send.
+        for (filling, list) in fillings.iter().zip(lists) {
+            for panel in list {
+                let depth = chunk.depth[panel.slot];
+                let [from, to] = panel.ends.map(|end| filling.source[end]);
+                let steady = mul(from, depth.map(Real::mean_decay));
+                let change = mul(sub(to, from), depth.map(Real::decay_moment));
+                let sent = scale(add(steady, change), panel.masses[0] + panel.masses[1]);
+                chunk.sent[panel.slot] = add(chunk.sent[panel.slot], sent);
+            }
+        }
+        chunk
+    }
+}
+
+/// A medium at the ends of its panels, and those of them whose light arrives. Ends of others stay dark.
+fn filling<R: Real>(medium: usize, panels: Panels<R, 10>, chunk: &Chunk<R>) -> (Filling<R>, Vec<Panel<R>>) {
+    let count = panels.places.len();
+    let colors = |first: usize| (0..count).map(|place| panels.color(first, place)).collect::<Vec<_>>();
+    let (scatter, source) = (colors(SCATTERING), colors(EMISSION));
+    let mut list = panels.list;
+    list.retain(|panel| chunk.arriving[panel.slot].is_some());
+    let mut lit = vec![false; count];
+    for end in list.iter().flat_map(|panel| panel.ends) {
+        lit[end] = scatters(scatter[end]);
+    }
+    (Filling { medium, places: panels.places, points: panels.points, scatter, lit, source }, list)
+}

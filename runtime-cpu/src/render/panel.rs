@@ -1,0 +1,252 @@
+//! The panels of the corrected form: stretches of a ray between two places at which a medium is
+//! sampled, and how much matter is in each.
+//!
+//! Places are the nodes of the comb inside the medium, at `i step`, the end of the ray, and the walls
+//! that lie between two nodes, found by false position. In a panel the density is taken to be linear:
+//! trapezoid. Where it changes its sign, from p > 0 to m < 0, the positive part of the line is
+//! integrated and the error of the trapezoids before it made good (algorithms.md §5.1):
+//!
+//! `mass = length (p^2 / (2 (p - m)) + (p - m) / 12)`
+//!
+//! The last term is that of Euler and Maclaurin for the slope at which the density ends. Error: the third
+//! power of the step where the density ends at 0, the second at walls.
+//!
+//! Parts between two outside nodes are lost, as in [`super::comb`].
+//!
+//! Twin: `compiler/src/wgsl/render/panel.wgsl`.
+
+use super::camera::Ray;
+use super::comb::{Combs, Cursor};
+use super::fields::{Fields, Points};
+use super::scatter::Place;
+use super::scene::Integrator;
+use crate::real::{Real, Vec3, add, scale};
+use vol_compiler::ir::FunctionId;
+
+/// Rounds of false position by which a wall is found.
+pub(crate) const WALL_ROUNDS: u32 = 3;
+
+/// A stretch of a ray inside a medium.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Panel<R> {
+    /// Number of the interval between nodes: that of interval `j` after the cursor of active ray `a` is
+    /// `a * batches.nodes + j`.
+    pub(crate) slot: usize,
+    /// Places at which it begins and ends.
+    pub(crate) ends: [usize; 2],
+    /// Integral of the density that each end stands for.
+    pub(crate) masses: [R; 2],
+}
+
+/// The panels of one medium, and a function of it at their ends.
+pub(crate) struct Panels<R, const N: usize> {
+    /// Where they begin and end.
+    pub(crate) places: Vec<Place<R>>,
+    /// The same in space.
+    pub(crate) points: Points<R>,
+    /// Outputs of the function there; the first is the density.
+    pub(crate) values: [Vec<R>; N],
+    /// Those with matter.
+    pub(crate) list: Vec<Panel<R>>,
+}
+
+impl<R: Real, const N: usize> Panels<R, N> {
+    /// Three outputs of the function at a place.
+    pub(crate) fn color(&self, first: usize, place: usize) -> Vec3<R> {
+        [0, 1, 2].map(|channel| self.values[first + channel][place])
+    }
+
+    /// Optical depth of a panel; the extinction per unit of density is in three outputs.
+    pub(crate) fn depth(&self, panel: &Panel<R>, first: usize) -> Vec3<R> {
+        let [from, to] = [0, 1].map(|end| scale(self.color(first, panel.ends[end]), panel.masses[end]));
+        add(from, to)
+    }
+}
+
+/// Two neighbouring nodes of which one is inside: distance along the ray and signed distance of each.
+#[derive(Clone, Copy, Debug)]
+struct Crossing<R> {
+    which: usize,
+    inside: [R; 2],
+    outside: [R; 2],
+}
+
+impl<R: Real> Crossing<R> {
+    /// Where the signed distance would be 0 if it were linear between the two.
+    fn probe(&self) -> R {
+        let ([t, value], [other_t, other_value]) = (self.inside, self.outside);
+        t + (other_t - t) * (value / (value - other_value))
+    }
+
+    /// Takes the signed distance at the probe into account.
+    fn narrow(&mut self, t: R, value: R) {
+        *(if value < R::ZERO { &mut self.inside } else { &mut self.outside }) = [t, value];
+    }
+}
+
+/// Integral of the positive part of a density over a stretch, by its values at both ends: what each
+/// end stands for.
+fn masses<R: Real>(length: R, [from, to]: [R; 2]) -> [R; 2] {
+    let half = R::from_f32(0.5) * length;
+    let (above, below) = (from.max(to), from.min(to));
+    if !((above > R::ZERO) & (below < R::ZERO)) {
+        return [half * from.max(R::ZERO), half * to.max(R::ZERO)];
+    }
+    let fall = above - below;
+    let mass = half * (above * (above / fall)) + length * (fall * R::from_f32(1.0 / 12.0));
+    if from > R::ZERO { [mass, R::ZERO] } else { [R::ZERO, mass] }
+}
+
+impl<F: Fields> Integrator<'_, F> {
+    /// The panels of one medium between the next `batches.nodes + 1` nodes of each active ray, with the
+    /// outputs of a function of which the first is the density.
+    pub(crate) fn panels<const N: usize>(
+        &mut self,
+        medium: usize,
+        function: FunctionId,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+    ) -> Panels<F::Real, N> {
+        let (mut places, stretches, crossings) = self.stretches(medium, rays, combs, active);
+        places.extend(self.walls(medium, rays, active, crossings));
+        let point = |place: &Place<F::Real>| rays[active[place.which].ray].at(place.t);
+        let points: Points<F::Real> = places.iter().map(point).collect();
+        let values: [Vec<F::Real>; N] = self.fields.sample(function, &points);
+        let panel = |(slot, ends): (usize, [usize; 2])| {
+            let length = places[ends[1]].t - places[ends[0]].t;
+            Panel { slot, ends, masses: masses(length, ends.map(|end| values[0][end])) }
+        };
+        let has_matter = |panel: &Panel<F::Real>| panel.masses.iter().any(|&mass| mass > F::Real::ZERO);
+        let list = stretches.into_iter().map(panel).filter(has_matter).collect();
+        Panels { places, points, values, list }
+    }
+
+    /// The nodes inside, the stretches between places (slot, first and last place), and the crossings of
+    /// walls, which are the places after the nodes.
+    #[expect(clippy::type_complexity, reason = "three lists that belong together for one caller")]
+    fn stretches(
+        &mut self,
+        medium: usize,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+    ) -> (Vec<Place<F::Real>>, Vec<(usize, [usize; 2])>, Vec<Crossing<F::Real>>) {
+        // Take the nodes of the panels in the medium's range.
+        let mut runs = Vec::with_capacity(active.len());
+        let (mut nodes, mut points) = (Vec::new(), Points::new());
+        for (which, cursor) in active.iter().enumerate() {
+            let (range, whole) = (combs.ranges[medium][cursor.ray], combs.whole[cursor.ray]);
+            let first = range.first.max(cursor.node);
+            let last = range.last.min(whole.last).min(cursor.node + self.batches.nodes - 1);
+            if first <= last {
+                runs.push((which, first, last, nodes.len()));
+                for node in first..=last + 1 {
+                    let t = combs.distance(node).min(combs.ends[cursor.ray]);
+                    let place = Place { which, node: Some((node - cursor.node) as usize), t };
+                    nodes.push(place);
+                    points.push(rays[cursor.ray].at(t));
+                }
+            }
+        }
+        let region = self.region(medium, &points, combs.step);
+        // Keep those inside.
+        let mut places = Vec::new();
+        let mut place_of = vec![0; nodes.len()];
+        for (index, node) in nodes.iter().enumerate().filter(|&(index, _)| region[index] < F::Real::ZERO) {
+            place_of[index] = places.len();
+            places.push(*node);
+        }
+        // Between two of them is a stretch; a wall ends it where one is outside.
+        let (mut stretches, mut crossings) = (Vec::new(), Vec::new());
+        for (which, first, last, offset) in runs {
+            for node in first..=last {
+                let index = offset + (node - first) as usize;
+                let ends = [index, index + 1];
+                let inside = ends.map(|end| region[end] < F::Real::ZERO);
+                if !(nodes[ends[0]].t < nodes[ends[1]].t) || inside == [false, false] {
+                    continue;
+                }
+                let wall = places.len() + crossings.len();
+                let slot = which * self.batches.nodes as usize + (node - active[which].node) as usize;
+                stretches.push((slot, [0, 1].map(|i| if inside[i] { place_of[ends[i]] } else { wall })));
+                let [from, to] = ends.map(|end| [nodes[end].t, region[end]]);
+                match inside {
+                    [true, false] => crossings.push(Crossing { which, inside: from, outside: to }),
+                    [false, true] => crossings.push(Crossing { which, inside: to, outside: from }),
+                    _ => {}
+                }
+            }
+        }
+        (places, stretches, crossings)
+    }
+
+    /// Finds the walls.
+    fn walls(
+        &mut self,
+        medium: usize,
+        rays: &[Ray<F::Real>],
+        active: &[Cursor],
+        mut crossings: Vec<Crossing<F::Real>>,
+    ) -> Vec<Place<F::Real>> {
+        let region = self.scene.media[medium].region;
+        for _ in 0..WALL_ROUNDS {
+            let probes: Vec<_> = crossings.iter().map(Crossing::probe).collect();
+            let point = |(crossing, &t): (&Crossing<_>, &_)| rays[active[crossing.which].ray].at(t);
+            let points = crossings.iter().zip(&probes).map(point).collect();
+            let [values] = self.fields.sample(region, &points);
+            self.stats.region_evaluations += values.len() as u64;
+            let found = crossings.iter_mut().zip(probes.into_iter().zip(values));
+            found.for_each(|(crossing, (t, value))| crossing.narrow(t, value));
+        }
+        let place = |crossing: &Crossing<_>| Place { which: crossing.which, node: None, t: crossing.probe() };
+        crossings.iter().map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stretch_without_a_change_of_sign_is_a_trapezoid() {
+        assert_eq!(masses(2.0, [3.0, 5.0]), [3.0, 5.0]);
+        assert_eq!(masses(2.0, [3.0, 0.0]), [3.0, 0.0]);
+        assert_eq!(masses(2.0, [-3.0, -5.0]), [0.0, 0.0]);
+        assert_eq!(masses(0.0, [-3.0, 5.0]), [0.0, 0.0]);
+    }
+
+    /// Integral of max(0, f) over -1..1 by panels of a width, first node at an offset.
+    fn integral(f: impl Fn(f64) -> f64, step: f64, offset: f64) -> f64 {
+        let node = |i: i32| -1.0 + (f64::from(i) - offset) * step;
+        let count = (2.0 / step) as i32 + 2;
+        (0..count).map(|i| masses(step, [f(node(i)), f(node(i + 1))]).iter().sum::<f64>()).sum()
+    }
+
+    #[test]
+    fn ends_at_zero_are_third_order() {
+        // 3/4 (1/4 - t^2) integrates to 1/8.
+        let f = |t: f64| 0.75 * (0.25 - t * t);
+        let worst = |step: f64| {
+            let errors = (0..37).map(|i| (integral(f, step, (f64::from(i) + 0.5) / 37.0) - 0.125).abs());
+            errors.fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (worst(0.1), worst(0.025));
+        assert!(coarse < 1e-3 && fine < coarse / 40.0, "{coarse:e} {fine:e}");
+        // A trapezoid without the correction is of second order and worse.
+        let plain = |step: f64| integral(|t| f(t).max(0.0), step, 0.3) - 0.125;
+        assert!(plain(0.025).abs() > 3.0 * fine, "{:e} {fine:e}", plain(0.025));
+    }
+
+    #[test]
+    fn a_wall_is_found() {
+        // Through a ball of radius 1: the distance is not linear.
+        let distance = |t: f64| (t * t + 0.3_f64.powi(2)).sqrt() - 1.0;
+        let mut crossing = Crossing { which: 0, inside: [0.8, distance(0.8)], outside: [1.1, distance(1.1)] };
+        for _ in 0..WALL_ROUNDS {
+            let t = crossing.probe();
+            crossing.narrow(t, distance(t));
+        }
+        assert!((crossing.probe() - (1.0_f64 - 0.09).sqrt()).abs() < 1e-7);
+    }
+}

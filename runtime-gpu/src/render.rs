@@ -5,9 +5,10 @@
 //! frame compiles nothing.
 
 use crate::{Buffer, Gpu, GpuError, Kernel, groups_for};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use vol_compiler::frame::{Counts, Frame, Image, Job};
+use vol_compiler::frame::{Counts, Frame, Image, Job, Quadrature};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_compiler::wgsl;
@@ -32,23 +33,38 @@ const READ_BUFFERS: u32 = 4;
 /// A program ready to be rendered on one device.
 #[derive(Debug)]
 pub struct Renderer {
-    kernel: Kernel,
+    /// For the midpoint rule, or for anything where there are no media.
+    midpoint: OnceLock<Kernel>,
+    /// For the corrected form.
+    corrected: OnceLock<Kernel>,
 }
 
 impl Renderer {
-    /// Compiles a program for a device.
+    /// Prepares a program for a device. With media it is compiled with the first picture, since each
+    /// quadrature has a kernel of its own; else at once.
     ///
     /// # Errors
     /// [`GpuError`] if the device refuses the shader.
     pub fn new(gpu: &Gpu, program: &Program) -> Result<Self, GpuError> {
-        let text = wgsl::render::render_module(program).map_err(refused)?;
-        Ok(Self { kernel: gpu.kernel("render", &text, "render", READ_BUFFERS)? })
+        let new = Self { midpoint: OnceLock::new(), corrected: OnceLock::new() };
+        if program.media.is_empty() {
+            new.kernel(gpu, program, Quadrature::Midpoint)?;
+        }
+        Ok(new)
     }
 
-    /// How long the device took to compile the program.
-    #[must_use]
-    pub fn compile_time(&self) -> Duration {
-        self.kernel.compile_time()
+    /// The kernel for a quadrature, compiled when it is first asked for.
+    fn kernel(&self, gpu: &Gpu, program: &Program, quadrature: Quadrature) -> Result<&Kernel, GpuError> {
+        let (kernel, quadrature) = match quadrature {
+            Quadrature::Corrected if !program.media.is_empty() => (&self.corrected, quadrature),
+            Quadrature::Corrected | Quadrature::Midpoint => (&self.midpoint, Quadrature::Midpoint),
+        };
+        if let Some(kernel) = kernel.get() {
+            return Ok(kernel);
+        }
+        let text = wgsl::render::render_module(program, quadrature).map_err(refused)?;
+        let compiled = gpu.kernel("render", &text, "render", READ_BUFFERS)?;
+        Ok(kernel.get_or_init(|| compiled))
     }
 
     /// Renders one frame. `progress` is told the number of pixels done; `None` means cancelled.
@@ -65,6 +81,7 @@ impl Renderer {
         cancelled: &AtomicBool,
     ) -> Result<Option<(Image, Counts)>, GpuError> {
         let [width, height] = job.size;
+        let kernel = self.kernel(gpu, program, job.quadrature)?;
         let words = |tile, budget| wgsl::render::frame_words(program, frame, job, tile, budget);
         let scene = Shared::upload(gpu, frame)?;
         let input = gpu.upload(&words([0; 4], 0))?;
@@ -86,7 +103,7 @@ impl Renderer {
                 let started = Instant::now();
                 budget = budget.min(most - taken);
                 gpu.write(&input, &words(tile, budget))?;
-                gpu.dispatch(&self.kernel, &scene.with(&input), &output, groups)?;
+                gpu.dispatch(kernel, &scene.with(&input), &output, groups)?;
                 gpu.wait()?;
                 taken += budget;
                 budget = next_budget(budget, started.elapsed());

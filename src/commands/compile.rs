@@ -4,6 +4,7 @@ use std::io::{self, Write as _};
 
 use vol::failure::Failure;
 use vol::output::atomic;
+use vol_compiler::frame::Quadrature;
 use vol_compiler::wgsl;
 
 use crate::cli;
@@ -14,7 +15,7 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     }
     let session = super::load(&arguments.scene)?;
     let text = match arguments.target {
-        cli::Target::Wgsl => wgsl::render::render_module(&session.program),
+        cli::Target::Wgsl => wgsl::render::render_module(&session.program, Quadrature::Midpoint),
     };
     let text = text.map_err(|error| {
         let text = format!("cannot translate `{}`: {error}", arguments.scene.display());

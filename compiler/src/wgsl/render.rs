@@ -1,7 +1,7 @@
 //! The whole shader of a program, and the numbers of a frame as its input.
 //!
-//! The text depends on the program alone: params, time and switches change only the words of
-//! `vol_input`, so a pipeline is built once per scene. [`render_module`] puts together
+//! The text depends on the program and the quadrature alone: params, time and switches change only the words
+//! of `vol_input`, so a pipeline is built once per scene, or twice where both quadratures are used. [`render_module`] puts together
 //!
 //! 1. a comment on the bindings and the words of `vol_input`,
 //! 2. the prelude and the program's functions ([`super::functions`]),
@@ -23,9 +23,8 @@
 //! | 24 | `AT_SAMPLES` | samples of a pixel, or the most |
 //! | 25 | `AT_TOLERANCE` | error at which a pixel takes no more of them, 0 for as many everywhere |
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
-//! | 27 | `AT_QUADRATURE` | 0 midpoint, 1 corrected |
-//! | 28 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
-//! | 28 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
+//! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
+//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 10 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
@@ -57,7 +56,7 @@ const INTEGRATOR: [&str; 14] = [
 ];
 
 /// Words before the objects.
-const HEADER_WORDS: usize = 28;
+const HEADER_WORDS: usize = 27;
 
 /// Words of an object.
 const OBJECT_WORDS: usize = 8;
@@ -81,7 +80,7 @@ const NO_DEPTH: f32 = 1e29;
 const INFINITE: f32 = 1e6;
 
 /// Places in the header, in words.
-const HEADER: [(&str, usize); 14] = [
+const HEADER: [(&str, usize); 13] = [
     ("AT_TILE", 0),
     ("AT_SIZE", 4),
     ("AT_STEP", 6),
@@ -95,7 +94,6 @@ const HEADER: [(&str, usize); 14] = [
     ("AT_SAMPLES", 24),
     ("AT_TOLERANCE", 25),
     ("AT_BUDGET", 26),
-    ("AT_QUADRATURE", 27),
 ];
 
 const BINDINGS: &str = "\
@@ -114,20 +112,20 @@ const BINDINGS: &str = "\
 //                      how far the radiance is from the one by every other node of the media
 ";
 
-/// The complete shader of a program.
+/// The complete shader of a program, for jobs with one quadrature; without media there is no difference.
 ///
 /// # Errors
 ///
 /// If naga does not accept the text, which is a fault of this crate.
-pub fn render_module(program: &Program) -> Result<String, WgslError> {
+pub fn render_module(program: &Program, quadrature: Quadrature) -> Result<String, WgslError> {
     let functions = super::functions(&program.module);
-    let text = format!("{BINDINGS}\n{functions}\n{}\n{}", glue(program), INTEGRATOR.join("\n"));
+    let text = format!("{BINDINGS}\n{functions}\n{}\n{}", glue(program, quadrature), INTEGRATOR.join("\n"));
     super::validate(&text)?;
     Ok(text)
 }
 
 /// Constants and functions that the integrator needs to know a program.
-fn glue(program: &Program) -> String {
+fn glue(program: &Program, quadrature: Quadrature) -> String {
     let mut text =
         String::from("// ---- this program ------------------------------------------------------------\n\n");
     let (objects, media) = (program.objects.len(), program.media.len());
@@ -150,9 +148,10 @@ fn glue(program: &Program) -> String {
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
     }
-    // What no light asks for is left out by the device's compiler.
+    // What no light asks for, and the other quadrature, is left out by the device's compiler.
     let lights = &program.lights;
     let switches = [
+        ("CORRECTED", quadrature == Quadrature::Corrected),
         ("SOFT_LIGHTS", lights.iter().any(|light| light.size.is_some())),
         ("OCCLUDING_LIGHTS", lights.iter().any(|light| light.occlusion.is_some())),
     ];
@@ -323,10 +322,6 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     words.extend([camera.origin, camera.forward, camera.right, camera.up, frame.background].concat());
     words.push(frame.lights.len() as f32);
     words.extend([job.sampling.most as f32, job.sampling.tolerance, budget as f32]);
-    words.push(match job.quadrature {
-        Quadrature::Midpoint => 0.0,
-        Quadrature::Corrected => 1.0,
-    });
     // Records of all objects and media of the program; those that are not in the frame stay 0.
     let mut objects = vec![[0.0; OBJECT_WORDS]; program.objects.len()];
     for object in &frame.objects {

@@ -27,7 +27,6 @@ const TRIES: u32 = 8u;
 const UNLIT: f32 = 1.0;
 const UNSHADOWED: f32 = 2.0;
 const SHADOWED: f32 = 3.0;
-const CORRECTED: f32 = 1.0;
 const ROOT_THIRD: f32 = 0.5773503;
 
 fn word3(at: u32) -> vec3f {

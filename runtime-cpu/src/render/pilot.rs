@@ -46,10 +46,10 @@ const MAX_HALVINGS: u32 = 9;
 const FREE_BUDGET: u64 = 16_000_000;
 
 /// Samples that no round may exceed.
-const MOST_BUDGET: u64 = 400_000_000;
+const MOST_BUDGET: u64 = 1_000_000_000;
 
 /// Between the two, a round may cost this part of the picture at its step.
-const BUDGET_SHARE: f64 = 0.25;
+const BUDGET_SHARE: f64 = 1.0;
 
 /// Samples of a round over those of the one before: twice as many nodes, and from each of them
 /// twice as many along the shadow rays.

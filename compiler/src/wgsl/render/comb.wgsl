@@ -47,8 +47,7 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
     comb.end = end;
-    let corrected = vol_input[AT_QUADRATURE] == CORRECTED;
-    let offset = select(0.5, 0.0, corrected);
+    let offset = select(0.5, 0.0, CORRECTED);
     var whole = vec2i(0, -1);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let range = node_range(ray, medium, step_size, offset, end);
@@ -59,7 +58,7 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         // Panels have no weights.
-        if (corrected) {
+        if (CORRECTED) {
             comb.own[medium] = FAR;
             continue;
         }

@@ -81,7 +81,8 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
             }
             let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
             let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
-            masses = panel_masses(stretch.y - stretch.x, first.density, last.density);
+            let open = open_ends(node, t, own, next, (*comb).step);
+            masses = panel_masses((*comb).step, stretch.y - stretch.x, vec2f(first.density, last.density), open);
             (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
         }
         (*panels).ends[medium] = ends;

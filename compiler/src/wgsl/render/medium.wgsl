@@ -19,7 +19,7 @@ struct Glow {
 
 // Follows the ray through the media up to its end.
 fn march(ray: Ray, end: f32) -> Glow {
-    if (vol_input[AT_QUADRATURE] == CORRECTED) {
+    if (CORRECTED) {
         return march_panels(ray, end);
     }
     return march_nodes(ray, end);

@@ -53,7 +53,7 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
 
 // Integral of the extinction along the ray.
 fn optical_depth(ray: Ray, end: f32) -> vec3f {
-    if (vol_input[AT_QUADRATURE] == CORRECTED) {
+    if (CORRECTED) {
         return depth_by_panels(ray, end);
     }
     return depth_by_nodes(ray, end);
@@ -131,7 +131,8 @@ fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<funct
                 last = select(last, matter, leaves);
                 stretch = select(vec2f(wall, t.y), vec2f(t.x, wall), leaves);
             }
-            let masses = panel_masses(stretch.y - stretch.x, first.x, last.x);
+            let open = open_ends(node, t, own, next, step_size);
+            let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }
     }

@@ -111,8 +111,10 @@ fn frame(program: &Program) -> Frame {
 #[test]
 fn modules_are_accepted() {
     for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
-        let text = render_module(&program(objects, media));
-        assert!(text.is_ok_and(|text| text.contains("fn render(")), "{objects} objects, {media} media");
+        for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
+            let text = render_module(&program(objects, media), quadrature);
+            assert!(text.is_ok_and(|text| text.contains("fn render(")), "{objects} objects, {media} media");
+        }
     }
 }
 
@@ -130,13 +132,13 @@ fn words_stand_where_the_shader_looks() {
     let words: Vec<f32> = words.into_iter().map(f32::from_bits).collect();
     assert_eq!(words[..8], [8.0, 16.0, 24.0, 32.0, 40.0, 30.0, 0.1, 0.2]);
     assert_eq!(words[8..24], [1., 2., 3., 4., 5., 6., 7., 8., 9., 10., 11., 12., 13., 14., 15., 1.]);
-    assert_eq!(words[24..28], [33.0, 0.25, 5.0, 1.0]);
-    let text = glue(&program);
+    assert_eq!(words[24..27], [33.0, 0.25, 5.0]);
+    let text = glue(&program, Quadrature::Midpoint);
     let place = |name: &str| -> usize {
         let line = text.lines().find_map(|line| line.strip_prefix(&format!("const {name}: u32 = ")));
         line.and_then(|line| line.strip_suffix("u;")?.parse().ok()).expect("a constant of the glue")
     };
-    assert_eq!(place("AT_OBJECTS"), 28);
+    assert_eq!(place("AT_OBJECTS"), 27);
     let (objects, media, lights) = (place("AT_OBJECTS"), place("AT_MEDIA"), place("AT_LIGHTS"));
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);

@@ -5,7 +5,10 @@
 
 mod camera;
 mod extent;
+mod light_grid;
 mod tube;
+
+pub use light_grid::LightGrid;
 
 use crate::curve::{self, CurveTable, Quadratic};
 use crate::ir::FunctionId;
@@ -13,6 +16,7 @@ use crate::program::{LightKind, Lighting, Program, Slot, Slot3, TubeSizes};
 use crate::reference;
 use extent::{Solid, Space};
 use glam::DVec3;
+use std::sync::Arc;
 use vol_language::diag::Diagnostic;
 
 /// A box aligned with the axes; infinite for shapes without bounds, `lo > hi` if empty.
@@ -44,6 +48,9 @@ pub struct Frame {
     pub media: Vec<MediumFrame>,
     /// Lights that are on.
     pub lights: Vec<LightFrame>,
+    /// What media leave of each light, tabulated; where there is none, and for lights beyond the end of the
+    /// list, both backends march through the media instead. Empty until someone chooses.
+    pub light_grids: Vec<Option<Arc<LightGrid>>>,
     /// Radiance where nothing is hit.
     pub background: [f32; 3],
     /// Box around all bounded objects and media; what the default camera frames.
@@ -347,6 +354,7 @@ impl Program {
             objects,
             media,
             lights,
+            light_grids: Vec::new(),
         })
     }
 }

@@ -19,6 +19,6 @@ mod real;
 pub mod render;
 
 pub use render::{
-    Method, NoMajorant, Stats, StepChoice, TubeBounds, choose_step, fixed_step_default, reference_pixels, render,
-    render_by, render_reference,
+    Choice, GridChoice, Method, NoMajorant, Stats, StepChoice, TubeBounds, choose, choose_light_grids,
+    choose_step, fixed_step_default, reference_pixels, render, render_by, render_reference,
 };

@@ -11,7 +11,8 @@
 //!    them: `corrected`, by `panel`; `scatter` lights the nodes.
 //! 5. `film`: `color = L + T * (surface or background)`, tiles, threads; `sampling` takes the mean.
 //!
-//! `pilot` chooses the comb's step and which of the two, after a `survey`.
+//! `pilot` chooses the comb's step and which of the two, after a `survey`; `grid_choice` where `shadow` looks depths up
+//! in a `light_grid`.
 //!
 //! Two further ways through the media, for comparison and on the CPU only, are behind `method`: `fixed_step`
 //! is the plain marcher of the literature, `monte_carlo` an unbiased oracle that shares nothing with the comb.
@@ -26,6 +27,8 @@ mod corrected;
 mod fields;
 mod film;
 mod fixed_step;
+mod grid_choice;
+mod light_grid;
 mod majorant;
 mod matter;
 mod medium;
@@ -48,6 +51,7 @@ mod survey;
 mod tests;
 mod tube_axis;
 
+pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids};
 pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
 pub use pilot::{StepChoice, choose_step};
 
@@ -159,11 +163,13 @@ fn pixel(radiance: Radiance<f32>) -> Pixel {
 }
 
 /// The same picture in f64 with the reference evaluator: rgb, transmittance rgb and depth of each
-/// pixel, rows from the top. Slow; for small pictures.
+/// pixel, rows from the top. Marches towards the lights whatever grids the frame holds. Slow; for small
+/// pictures.
 #[must_use]
 pub fn render_reference(program: &Program, frame: &Frame, job: &Job) -> Vec<[f64; 7]> {
     let watch = Watch { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
-    let scene = Scene::<f64>::new(frame, job);
+    let mut scene = Scene::<f64>::new(frame, job);
+    scene.grids.clear();
     let picture = expose(&scene, job, Batches::DEFAULT, &|| Reference::new(program, frame), &watch);
     let pixels = picture.map_or_else(Vec::new, |(pixels, _)| pixels);
     let flat = |pixel: Radiance<f64>| {

@@ -84,7 +84,9 @@ impl Renderer {
         let kernel = self.kernel(gpu, program, job.quadrature)?;
         let words = |tile, budget| wgsl::render::frame_words(program, frame, job, tile, budget);
         let scene = Shared::upload(gpu, frame)?;
-        let input = gpu.upload(&words([0; 4], 0))?;
+        let mut input = words([0; 4], 0);
+        input.extend(wgsl::render::grid_words(frame, input.len()));
+        let input = gpu.upload(&input)?;
         let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
         let most = job.sampling.most;
         let mut done = 0;

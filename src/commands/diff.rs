@@ -129,17 +129,16 @@ fn compare_pictures(
     let render = |device: &Device, frame: &Frame, job: &Job| {
         Ok::<_, Failure>(device.prepare(program)?.render(frame, job, &|_| {}, &CANCELLED)?.image)
     };
-    let frame = prepared.frame(size)?;
-    let choice = vol_runtime_cpu::choose_step(program, &frame, size, MAX_ERROR);
+    let mut frame = prepared.frame(size)?;
     let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
     let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
-    let job = choice.job(size, sampling);
+    let job = vol_runtime_cpu::choose(program, &mut frame, size, sampling, MAX_ERROR).job;
     let pair = compare::images(&render(cpu, &frame, &job)?, &render(gpu, &frame, &job)?, GPU_IMAGE);
     // Rounding shows with few samples as well as with many, and the reference is slow.
     let small = at_most(size, REFERENCE_SIDE);
     let frame = prepared.frame(small)?;
     let coarse = REFERENCE_COARSENESS;
-    let (step, shadow_step) = (coarse * choice.step, coarse * choice.shadow_step);
+    let (step, shadow_step) = (coarse * job.step, coarse * job.shadow_step);
     let job = Job { size: small, step, shadow_step, ..job };
     let reference = compare::reference_picture(program, &frame, &job);
     let against =

@@ -4,7 +4,7 @@ use vol::failure::Failure;
 use vol::session::{Moment, Session};
 use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
-use vol_runtime_cpu::{Method, TubeBounds};
+use vol_runtime_cpu::{GridChoice, Method, TubeBounds};
 
 use crate::cli::{self, Integrator};
 
@@ -21,8 +21,10 @@ pub(super) struct Plan {
     pub(super) job: Job,
     /// Whether the steps of the job mean anything.
     pub(super) has_steps: bool,
-    /// What the pilot says of the error.
+    /// What the pilot and the tests of the grids say of the error.
     pub(super) estimate: Option<f32>,
+    /// What was chosen for each light.
+    pub(super) grids: Vec<GridChoice>,
 }
 
 /// Finds settings that mean nothing together.
@@ -94,11 +96,11 @@ pub(super) fn sampling(
     session.sampling(params, moment, arguments.samples, arguments.adaptive)
 }
 
-/// Chooses the method and its steps; the pilot of the comb takes a while.
+/// Chooses the method, its steps and the grids of the frame's lights; the pilot of the comb takes a while.
 pub(super) fn plan(
     arguments: &cli::Render,
     program: &Program,
-    frame: &Frame,
+    frame: &mut Frame,
     size: [u32; 2],
     sampling: Sampling,
 ) -> Plan {
@@ -111,14 +113,14 @@ pub(super) fn plan(
         Integrator::Comb => {
             let max_error = arguments.max_error.unwrap_or(MAX_ERROR);
             let scale = arguments.step_scale.unwrap_or(1.0);
-            let choice = vol_runtime_cpu::choose_step(program, frame, size, max_error);
-            let chosen = choice.job(size, sampling);
-            let (step, shadow_step) = (scale * chosen.step, scale * chosen.shadow_step);
+            let chosen = vol_runtime_cpu::choose(program, frame, size, sampling, max_error);
+            let (step, shadow_step) = (scale * chosen.job.step, scale * chosen.job.shadow_step);
             Plan {
                 method: Method::Comb,
-                job: Job { step, shadow_step, ..chosen },
+                job: Job { step, shadow_step, ..chosen.job },
                 has_steps: true,
-                estimate: Some(choice.estimate),
+                estimate: Some(chosen.estimate),
+                grids: chosen.grids,
             }
         }
         Integrator::FixedStep => {
@@ -132,10 +134,15 @@ pub(super) fn plan(
                 job: job(step, arguments.fixed.light_step.unwrap_or(step)),
                 has_steps: true,
                 estimate: None,
+                grids: Vec::new(),
             }
         }
-        Integrator::MonteCarlo => {
-            Plan { method: Method::MonteCarlo { seed }, job: job(1.0, 1.0), has_steps: false, estimate: None }
-        }
+        Integrator::MonteCarlo => Plan {
+            method: Method::MonteCarlo { seed },
+            job: job(1.0, 1.0),
+            has_steps: false,
+            estimate: None,
+            grids: Vec::new(),
+        },
     }
 }

@@ -96,6 +96,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         shadow_step: None,
         estimate: None,
         error: None,
+        light_grids: Vec::new(),
         samples_per_pixel: 0,
         adaptive: None,
         mean_samples_per_pixel: 0.0,
@@ -151,11 +152,12 @@ impl Pictures<'_> {
         super::stop_if_cancelled()?;
         let Prepared { session, params, .. } = self.prepared;
         let Stats { size, frames, milliseconds: phases, .. } = &mut *self.stats;
-        let frame = session.frame(params, moment, *size)?;
-        // Choose the distance between samples from a few rays, unless it is given.
+        let mut frame = session.frame(params, moment, *size)?;
+        // Choose the distance between samples from a few rays, unless it is given, and what to look up
+        // instead of marching.
         let sampling = method::sampling(self.arguments, session, params, moment)?;
         let plan = timed(&mut phases.pilot, || {
-            method::plan(self.arguments, &session.program, &frame, *size, sampling)
+            method::plan(self.arguments, &session.program, &mut frame, *size, sampling)
         });
         super::stop_if_cancelled()?;
         // Compute the picture.

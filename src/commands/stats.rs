@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 use vol_compiler::frame::Counts;
+use vol_runtime_cpu::GridChoice;
 
 use super::method::Plan;
 
@@ -42,6 +43,8 @@ pub(super) struct Stats {
     pub(super) estimate: Option<f32>,
     /// Relative root mean square difference to the picture of --reference.
     pub(super) error: Option<f64>,
+    /// What was chosen for each light of the last frame.
+    pub(super) light_grids: Vec<LightGrid>,
     /// Samples of a pixel asked for, or the most; the largest of all frames.
     pub(super) samples_per_pixel: u32,
     /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.
@@ -64,12 +67,38 @@ impl Stats {
             self.shadow_step = smaller(self.shadow_step, plan.job.shadow_step);
         }
         self.estimate = self.estimate.into_iter().chain(estimate).reduce(f32::max);
+        self.light_grids = plan.grids.iter().map(LightGrid::new).collect();
         self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);
         self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);
         self.frames += 1;
         let pixels = f64::from(self.size[0]) * f64::from(self.size[1]) * self.frames as f64;
         self.mean_samples_per_pixel = self.counts.camera_rays as f64 / pixels;
+    }
+}
+
+/// How a light finds its way through media.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LightGrid {
+    pub(super) depths: Depths,
+    /// Error of the grid, also of one that was tried and not taken.
+    pub(super) error: Option<f32>,
+}
+
+/// Where the optical depths towards a light come from.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Depths {
+    /// Marching along each shadow ray.
+    Direct,
+    /// A grid of this many points across, across and along the light.
+    Grid([u32; 3]),
+}
+
+impl LightGrid {
+    fn new(choice: &GridChoice) -> Self {
+        let depths = choice.grid.as_ref().map_or(Depths::Direct, |grid| Depths::Grid(grid.counts));
+        Self { depths, error: choice.error }
     }
 }
 
@@ -88,6 +117,9 @@ pub(super) struct Phases {
     /// Choosing the step size.
     #[serde(serialize_with = "milliseconds")]
     pub(super) pilot: Duration,
+    /// Choosing and filling the grids of lights.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) grids: Duration,
     /// Computing the pictures.
     #[serde(serialize_with = "milliseconds")]
     pub(super) render: Duration,

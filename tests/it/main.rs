@@ -17,6 +17,7 @@ mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
 mod library;
+mod light_grids;
 mod lights;
 mod mandelbulb;
 mod media;
@@ -56,6 +57,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
     trials.extend(library::trials());
+    trials.extend(light_grids::trials());
     trials.extend(lights::trials());
     trials.extend(mandelbulb::trials());
     trials.extend(media::trials());

@@ -35,7 +35,11 @@ const FAR_CAMERA: &str = "camera { from: (0, 0, 50), at: (0, 0, 0), fov: 0.2deg 
 fn draw(draw: &Draw<'_>, text: &str, size: [u32; 2], step: f32) -> Result<Image, Failed> {
     let program = compile("media.vol", text)?;
     let frame = frame(&program, 0.0, size)?;
-    draw(&program, &frame, &Job { size, step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE })
+    draw(
+        &program,
+        &frame,
+        &Job { size, step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE },
+    )
 }
 
 /// Colour and transmittance of the middle pixel.

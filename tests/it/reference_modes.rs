@@ -24,7 +24,13 @@ fn render(scene: &str, method: Method, job: &Job) -> Result<(Image, vol_runtime_
 }
 
 fn job(step: f32, samples: u32) -> Job {
-    Job { size: [12, 9], step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::uniform(samples) }
+    Job {
+        size: [12, 9],
+        step,
+        shadow_step: step,
+        quadrature: Quadrature::Midpoint,
+        sampling: Sampling::uniform(samples),
+    }
 }
 
 fn fixed(tube_bounds: TubeBounds) -> Method {

@@ -149,9 +149,8 @@ fn overlap_rules_by_definition() -> Result<(), Failed> {
 
 fn a_foot_has_its_own_coordinates() -> Result<(), Failed> {
     // At the crossing a point is 0.1 from the thick line and 0.05 from the thin one, 0.1 / 0.5 < 0.05 / 0.1.
-    let tube = |overlap: &str| {
-        format!("{CROSS}, radius: t => if t < 0.5 then 0.5 else 0.1, overlap: {overlap}")
-    };
+    let tube =
+        |overlap: &str| format!("{CROSS}, radius: t => if t < 0.5 then 0.5 else 0.1, overlap: {overlap}");
     let point = [[0.05, 0.1, 0.0]];
     let asked = "density: q => q.t + 10 * q.l";
     let [nearest, ratio, sum] = ["nearest", "min_ratio", "sum"].map(|overlap| {
@@ -174,7 +173,8 @@ fn open_ends_by_feet() -> Result<(), Failed> {
     let tube = "path([line((-3, 0, 0), (-1, 0, 0)), line((0, -2, 0), (0, 2, 0))]), radius: 0.3, caps: open";
     let points = [[0.0, 0.0, 0.1], [0.0, 1.0, 0.1], [0.0, 9.0, 0.1], [-9.0, 0.0, 0.1], [-2.0, 0.0, 0.4]];
     let found = |overlap: &str| {
-        Compiled::new(&scene(&format!("{tube}, overlap: {overlap}"), "density: 1"))?.field("distance:m", &points)
+        Compiled::new(&scene(&format!("{tube}, overlap: {overlap}"), "density: 1"))?
+            .field("distance:m", &points)
     };
     let inside = |found: &[f32]| found.iter().map(|d| *d < 0.0).collect::<Vec<_>>();
     for overlap in ["nearest", "min_ratio", "sum"] {
@@ -219,7 +219,8 @@ fn overlap_is_for_media() -> Result<(), Failed> {
     // With one radius and round ends it is the union in any case.
     let even = "bezier((0, 0, 0), (1, 1, 0), (2, 0, 0)), radius: 0.2, caps: round, overlap: min_ratio";
     ensure(object(even).is_empty(), || object(even))?;
-    let part = codes("medium m { region: tube(line((0, 0, 0), (0, 1, 0)), radius: 0.2, overlap: sum) | sphere(1) }");
+    let part =
+        codes("medium m { region: tube(line((0, 0, 0), (0, 1, 0)), radius: 0.2, overlap: sum) | sphere(1) }");
     ensure(part.contains("E0407"), || part.clone())
 }
 
@@ -235,10 +236,20 @@ fn stretched() -> Vec<(String, &'static str)> {
     let ring = "radius: t => 0.2 + 0.05 * sin(1turn * t), twist: t => 1turn * t";
     vec![
         (format!("bezier((-1 - time, 0, 0), (0, 1.2, 0.4 * time), (1, 0, 0)), {spread}"), OPEN),
-        (format!("bezier((-1, 0, 0), (-0.5, 1.2 + time, 0.5), (1, -0.4, 0.3), (1.2 + time, 1, 0)), {spread}"), OPEN),
+        (
+            format!(
+                "bezier((-1, 0, 0), (-0.5, 1.2 + time, 0.5), (1, -0.4, 0.3), (1.2 + time, 1, 0)), {spread}"
+            ),
+            OPEN,
+        ),
         (format!("bspline([(-1, 0, 0), (0, 0.8 + time, 0), (1, 0.2, 0.6), (2, 0.5, 0)]), {waves}"), OPEN),
         (format!("helix(0.8, 1.5 + 2 * time, 1.25), {spread}"), OPEN),
-        (format!("catmull_rom([(1 + time, 0, 0), (0, 0.3, -1), (-1, 0, 0), (0, -0.2, 1)], closed: true), {ring}"), CLOSED),
+        (
+            format!(
+                "catmull_rom([(1 + time, 0, 0), (0, 0.3, -1), (-1, 0, 0), (0, -0.2, 1)], closed: true), {ring}"
+            ),
+            CLOSED,
+        ),
         (format!("circle(0.8 + time), {ring}"), CLOSED),
     ]
 }
@@ -281,7 +292,9 @@ fn places(segments: &[Quadratic]) -> (Vec<[f32; 3]>, Vec<f64>) {
         for i in 0..along {
             let u = (i as f64 + 0.5) / along as f64;
             let (velocity, change) = (2.0 * b1.lerp(b2, u), 2.0 * (b2 - b1));
-            let at = vector(segment.a).lerp(vector(segment.b), u).lerp(vector(segment.b).lerp(vector(segment.c), u), u);
+            let at = vector(segment.a)
+                .lerp(vector(segment.b), u)
+                .lerp(vector(segment.b).lerp(vector(segment.c), u), u);
             let speed = velocity.length();
             let curvature = change.reject_from(velocity) / (speed * speed);
             let (x, y) = velocity.normalize().any_orthonormal_pair();
@@ -334,7 +347,8 @@ fn nearest(p: [f64; 3], segments: &[Quadratic]) -> f64 {
         let at = |i: usize| v * v * s.a[i] + 2.0 * u * v * s.b[i] + u * u * s.c[i] - p[i];
         (0..3).map(|i| at(i) * at(i)).sum::<f64>().sqrt()
     };
-    let rough = |s: &Quadratic| (0..=4).map(|i| distance(s, f64::from(i) / 4.0)).fold(f64::INFINITY, f64::min);
+    let rough =
+        |s: &Quadratic| (0..=4).map(|i| distance(s, f64::from(i) / 4.0)).fold(f64::INFINITY, f64::min);
     let least = segments.iter().map(rough).fold(f64::INFINITY, f64::min);
     let mut best = least;
     for segment in segments.iter().filter(|segment| rough(segment) < least + 0.1) {

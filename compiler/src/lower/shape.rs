@@ -253,7 +253,11 @@ impl Shape {
 
     /// The tube that the shape is, moved or not, if media add up over its feet; with the point in its
     /// coordinates.
-    pub(crate) fn adding_up(&self, graph: &mut crate::ir::graph::Graph, p: [ValueId; 3]) -> Option<(&Tube, [ValueId; 3])> {
+    pub(crate) fn adding_up(
+        &self,
+        graph: &mut crate::ir::graph::Graph,
+        p: [ValueId; 3],
+    ) -> Option<(&Tube, [ValueId; 3])> {
         match &self.kind {
             Kind::Tube(tube) => tube.adds_up().then_some((tube, p)),
             Kind::Transformed { child, transform } => {

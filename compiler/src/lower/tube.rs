@@ -135,7 +135,8 @@ impl Tube {
         let radius = lowerer.function("radius", 2, &[radius]);
         let sizes = TubeSizes { curve: self.index, radius, slope, caps: self.caps(), first_input: 0 };
         let (index, numbers) = lowerer.tube_sizes(sizes);
-        let [largest, shell, wall_scale, end_limit, end_scale, end_depth, end_twist, frenet, length] = numbers;
+        let [largest, shell, wall_scale, end_limit, end_scale, end_depth, end_twist, frenet, length] =
+            numbers;
         let zero = lowerer.graph.number(0.0);
         let twist = if self.outline.frenet { frenet } else { zero };
         let twist_rate = if self.curve.closed && !self.outline.frenet { end_twist } else { zero };

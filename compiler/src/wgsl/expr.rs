@@ -166,7 +166,9 @@ impl Writer<'_> {
 
     fn hole(&self, hole: &str, data: u32, args: &[ValueId]) -> String {
         let curve_word = |offset: u32| {
-            let word = u64::from(self.curve_table) + u64::from(layout::CURVE_WORDS) * u64::from(data) + u64::from(offset);
+            let word = u64::from(self.curve_table)
+                + u64::from(layout::CURVE_WORDS) * u64::from(data)
+                + u64::from(offset);
             format!("bitcast<u32>(vol_uniforms[{word}])")
         };
         match hole {

@@ -25,20 +25,22 @@
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
 //! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
-//! | after them | `AT_LIGHTS` | 10 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion |
+//! | after them | `AT_LIGHTS` | 11 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none) |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
+//! | after them | | 27 words per grid, see [`LightGrid`](crate::frame::LightGrid): distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth |
+//! | after them | | the depths of the grids, each from a multiple of 64 words on: [`grid_words`] |
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
 use super::WgslError;
-use crate::frame::{Aabb, Counts, Frame, Image, Job, MediumFrame, Pixel, Quadrature, Stride};
+use crate::frame::{Aabb, Counts, Frame, Image, Job, LightGrid, MediumFrame, Pixel, Quadrature, Stride};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
-const INTEGRATOR: [&str; 14] = [
+const INTEGRATOR: [&str; 15] = [
     include_str!("render.wgsl"),
     include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
@@ -46,6 +48,7 @@ const INTEGRATOR: [&str; 14] = [
     include_str!("render/surface.wgsl"),
     include_str!("render/shade.wgsl"),
     include_str!("render/shadow.wgsl"),
+    include_str!("render/light_grid.wgsl"),
     include_str!("render/penumbra.wgsl"),
     include_str!("render/occlusion.wgsl"),
     include_str!("render/comb.wgsl"),
@@ -62,13 +65,19 @@ const HEADER_WORDS: usize = 27;
 const OBJECT_WORDS: usize = 8;
 
 /// Words of a light.
-const LIGHT_WORDS: usize = 10;
+const LIGHT_WORDS: usize = 11;
 
 /// Words of a medium.
 const MEDIUM_WORDS: usize = 9;
 
 /// Words of a cell.
 const CELL_WORDS: usize = 6;
+
+/// Words of a grid, without its depths.
+const GRID_WORDS: usize = 27;
+
+/// Depths begin at multiples of this many words: so their places are exact in f32 up to 2^30.
+const GRID_ALIGNMENT: usize = 64;
 
 /// Words of `vol_output` per pixel.
 pub const PIXEL_WORDS: usize = 15;
@@ -311,7 +320,7 @@ fn wider(bounds: &Aabb, by: f32) -> Aabb {
 
 /// The contents of `vol_input`: a frame, a job, and the part of the picture to render
 /// (`[x, y, width, height]` in pixels) with at most `budget` more samples for each of its pixels, laid
-/// out as the module's documentation says.
+/// out as the module's documentation says. [`grid_words`] follow them.
 #[must_use]
 pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], budget: u32) -> Vec<u32> {
     let mut words = Vec::new();
@@ -349,13 +358,57 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     }
     words.extend(objects.as_flattened());
     words.extend(media.as_flattened());
-    for light in &frame.lights {
+    let mut grids_at = cells_at + cells.len();
+    for (index, light) in frame.lights.iter().enumerate() {
         words.push(f32::from(u8::from(light.distant)));
         words.extend([light.position, light.color].concat());
         words.extend([f32::from(u8::from(light.shadows)), light.size, light.occlusion]);
+        let grid = grid_of(frame, index).map_or(0, |_| grids_at);
+        words.push(grid as f32);
+        grids_at += if grid > 0 { GRID_WORDS } else { 0 };
     }
     words.extend(cells);
+    let mut depths_at = grids_at.next_multiple_of(GRID_ALIGNMENT);
+    for grid in grids(frame) {
+        words.extend(grid_record(grid, depths_at));
+        depths_at += grid.depths.len().next_multiple_of(GRID_ALIGNMENT);
+    }
     words.into_iter().map(f32::to_bits).collect()
+}
+
+/// The grid of a light.
+fn grid_of(frame: &Frame, light: usize) -> Option<&LightGrid> {
+    frame.light_grids.get(light)?.as_deref()
+}
+
+/// The grids of all lights that have one.
+fn grids(frame: &Frame) -> impl Iterator<Item = &LightGrid> {
+    (0..frame.lights.len()).filter_map(|light| grid_of(frame, light))
+}
+
+/// A grid without its depths, which begin at a word.
+fn grid_record(grid: &LightGrid, depths_at: usize) -> [f32; GRID_WORDS] {
+    let counts = grid.counts.map(|count| count as f32);
+    let channels = if grid.colored { 3.0 } else { 1.0 };
+    let [u, v, w] = grid.axes;
+    let vectors = [grid.origin, u, v, w, grid.lo, grid.scale, counts, grid.tint];
+    let all = [f32::from(u8::from(grid.distant))].into_iter();
+    let all = all.chain(vectors.into_iter().flatten()).chain([channels, depths_at as f32]);
+    let mut words = [0.0; GRID_WORDS];
+    words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
+    words
+}
+
+/// What follows `words`, the result of [`frame_words`] for the same frame, in `vol_input`: the depths of
+/// its grids. Nothing for a frame without grids.
+#[must_use]
+pub fn grid_words(frame: &Frame, words: usize) -> Vec<u32> {
+    let mut more = Vec::new();
+    for grid in grids(frame) {
+        more.resize((words + more.len()).next_multiple_of(GRID_ALIGNMENT) - words, 0);
+        more.extend(grid.depths.iter().map(|depth| depth.to_bits()));
+    }
+    more
 }
 
 /// State, box and more numbers of an object or medium; nothing for an empty box.

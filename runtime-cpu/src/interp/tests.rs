@@ -163,8 +163,9 @@ fn cost_by_length() {
             let angle = (i as f64 / count as f64) * 60.0;
             [angle.cos() * (1.0 + 0.02 * angle), 0.05 * angle - 1.5, angle.sin()]
         };
-        let segments: Vec<Quadratic> =
-            (0..count).map(|i| Quadratic { a: place(2 * i), b: place(2 * i + 1), c: place(2 * i + 2) }).collect();
+        let segments: Vec<Quadratic> = (0..count)
+            .map(|i| Quadratic { a: place(2 * i), b: place(2 * i + 1), c: place(2 * i + 2) })
+            .collect();
         let table = prepare(&segments);
         let mut bare = table.clone();
         bare.nodes.clear();
@@ -173,8 +174,11 @@ fn cost_by_length() {
         let coordinate = |f: fn(f32, f32) -> f32| -> Vec<f32> {
             (0..points).map(|i| f((i / 64) as f32 / 64.0, (i % 64) as f32 / 64.0)).collect()
         };
-        let inputs =
-            [coordinate(|ray, t| 4.0 * t - 2.0 + 0.1 * ray), coordinate(|ray, _| 0.2 * ray), coordinate(|_, t| t - 0.5)];
+        let inputs = [
+            coordinate(|ray, t| 4.0 * t - 2.0 + 0.1 * ray),
+            coordinate(|ray, _| 0.2 * ray),
+            coordinate(|_, t| t - 0.5),
+        ];
         let slices = inputs.each_ref().map(Vec::as_slice);
         let time = |table: &CurveTable| {
             let curves = [table.clone()];
@@ -188,7 +192,12 @@ fn cost_by_length() {
             }
             least / points as f64 * 1e9
         };
-        println!("{count} segments, {} pieces: {:.1} ns, all {:.1} ns", table.pieces.len(), time(&table), time(&bare));
+        println!(
+            "{count} segments, {} pieces: {:.1} ns, all {:.1} ns",
+            table.pieces.len(),
+            time(&table),
+            time(&bare)
+        );
     }
 }
 

@@ -163,7 +163,7 @@ impl<F: Fields> Integrator<'_, F> {
             ShadowRay::new(ray, lamp.distance.min(F::Real::from_f32(FAR)), shadow_bias(self.scene, place.t))
         };
         let rays: Vec<_> = asked.iter().map(shadow_ray).collect();
-        let found = self.visibility(&rays);
+        let found = self.visibility(&rays, light);
         asked.into_iter().zip(found).for_each(|(index, found)| seen[index] = found);
         seen
     }

@@ -46,7 +46,7 @@ const MAX_HALVINGS: u32 = 9;
 const FREE_BUDGET: u64 = 16_000_000;
 
 /// Samples that no round may exceed.
-const MOST_BUDGET: u64 = 1_000_000_000;
+pub(super) const MOST_BUDGET: u64 = 1_000_000_000;
 
 /// Between the two, a round may cost this part of the picture at its step.
 const BUDGET_SHARE: f64 = 1.0;
@@ -138,7 +138,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
 }
 
 /// The pilot's rays, in the same places for every step.
-struct Pilot<'a> {
+pub(super) struct Pilot<'a> {
     frame: &'a Frame,
     tapes: &'a Tapes,
     size: [u32; 2],
@@ -148,8 +148,8 @@ struct Pilot<'a> {
     meeting: usize,
     /// Part of the picture that a ray of each stratum stands for.
     shares: [f64; 2],
-    /// Work of the whole picture over that of the rays.
-    scale: f64,
+    /// Work of the whole picture, one sample per pixel, over that of the rays.
+    pub(super) scale: f64,
 }
 
 /// Both pictures at one step.
@@ -173,7 +173,7 @@ struct Candidate {
 }
 
 impl<'a> Pilot<'a> {
-    fn new(frame: &'a Frame, tapes: &'a Tapes, size: [u32; 2]) -> Self {
+    pub(super) fn new(frame: &'a Frame, tapes: &'a Tapes, size: [u32; 2]) -> Self {
         let scene = Scene::<f32>::new(
             frame,
             &StepChoice::new(1.0, Quadrature::Midpoint, 0.0).job(size, Sampling::CENTRE),
@@ -207,10 +207,15 @@ impl<'a> Pilot<'a> {
 
     fn expose(&self, choice: StepChoice, limit: u64) -> Option<(Vec<Radiance<f32>>, Stats)> {
         let scene = Scene::<f32>::new(self.frame, &choice.job(self.size, Sampling::CENTRE));
+        self.expose_scene(&scene, limit)
+    }
+
+    /// Renders the rays in a scene of the frame; nothing if that takes more samples than `limit`.
+    pub(super) fn expose_scene(&self, scene: &Scene<f32>, limit: u64) -> Option<(Vec<Radiance<f32>>, Stats)> {
         let purse = Purse::new(limit);
         let render = |rays: &[_]| {
             let fields = Batch::new(self.tapes, self.frame);
-            let mut integrator = Integrator::new(&scene, fields, Batches::DEFAULT).paid_from(&purse);
+            let mut integrator = Integrator::new(scene, fields, Batches::DEFAULT).paid_from(&purse);
             (integrator.radiance(rays), integrator.stats)
         };
         let parts: Vec<_> = self.rays.par_chunks(RAYS_PER_TASK).map(render).collect();
@@ -263,7 +268,7 @@ impl<'a> Pilot<'a> {
     }
 
     /// Rms of the difference over rms of the finer picture.
-    fn difference(&self, coarse: &[Radiance<f32>], fine: &[Radiance<f32>]) -> f32 {
+    pub(super) fn difference(&self, coarse: &[Radiance<f32>], fine: &[Radiance<f32>]) -> f32 {
         let square = |a: f32| f64::from(a).powi(2);
         let apart = |(a, b): (&Radiance<f32>, &Radiance<f32>)| -> f64 {
             a.color.iter().zip(&b.color).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2)).sum()
@@ -286,7 +291,7 @@ impl<'a> Pilot<'a> {
 }
 
 /// Samples of a part.
-fn cost(stats: &Stats) -> u64 {
+pub(super) fn cost(stats: &Stats) -> u64 {
     stats.medium_samples + stats.shadow_samples + stats.region_evaluations
 }
 

@@ -130,7 +130,7 @@ impl<F: Fields> Integrator<'_, F> {
                 asking.push((which, index, number));
             }
         }
-        let found = self.visibility(&shadow_rays);
+        let found = self.visibility(&shadow_rays, light);
         asking.into_iter().for_each(|(which, index, number)| seen[which][index] = found[number]);
         seen
     }

@@ -1,6 +1,7 @@
 //! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
 
 use super::fields::Fields;
+use super::light_grid::Grid;
 use super::method::Way;
 use crate::real::{Real, Vec3, length, vector};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,6 +27,8 @@ pub(crate) struct Scene<R> {
     pub(crate) media: Vec<Medium<R>>,
     /// Lights.
     pub(crate) lights: Vec<Light<R>>,
+    /// Their grids, as far as there are any.
+    pub(crate) grids: Vec<Option<Grid<R>>>,
     /// Radiance where nothing is hit.
     pub(crate) background: Vec3<R>,
     /// Distance between nodes along camera rays.
@@ -98,6 +101,8 @@ pub(crate) struct Light<R> {
     pub(crate) shadows: bool,
     pub(crate) size: R,
     pub(crate) occlusion: R,
+    /// Index among the lights of the frame.
+    pub(crate) index: usize,
 }
 
 impl<R: Real> Scene<R> {
@@ -110,13 +115,14 @@ impl<R: Real> Scene<R> {
             up: vector(frame.camera.up),
         };
         let size = job.size.map(|pixels| R::from_index(pixels as i32));
-        let lights = frame.lights.iter().map(|light| Light {
+        let lights = frame.lights.iter().enumerate().map(|(index, light)| Light {
             distant: light.distant,
             position: vector(light.position),
             color: vector(light.color),
             shadows: light.shadows,
             size: R::from_f32(light.size),
             occlusion: R::from_f32(light.occlusion),
+            index,
         });
         Self {
             footprint: (R::from_f32(2.0) * length(camera.up)) / size[1],
@@ -126,12 +132,18 @@ impl<R: Real> Scene<R> {
             solids: solids(frame),
             media: media(frame),
             lights: lights.collect(),
+            grids: frame.light_grids.iter().map(|grid| grid.as_ref().map(Grid::new)).collect(),
             background: vector(frame.background),
             step: R::from_f32(job.step),
             shadow_step: R::from_f32(job.shadow_step),
             way: Way::Comb,
             quadrature: job.quadrature,
         }
+    }
+
+    /// The grid of a light.
+    pub(crate) fn grid(&self, light: &Light<R>) -> Option<&Grid<R>> {
+        self.grids.get(light.index)?.as_ref()
     }
 }
 

@@ -173,9 +173,9 @@ impl<F: Fields> Integrator<'_, F> {
         if light.size > F::Real::ZERO {
             let cones = rays.iter().zip(facing);
             let cones = cones.map(|(&shadow, facing)| Cone { shadow, slope: facing.arriving.slope });
-            return self.soft_visibility(&cones.collect::<Vec<_>>());
+            return self.soft_visibility(&cones.collect::<Vec<_>>(), light);
         }
-        self.visibility(&rays)
+        self.visibility(&rays, light)
     }
 }
 
@@ -205,6 +205,7 @@ mod tests {
             shadows: true,
             size: 6.0,
             occlusion: 0.0,
+            index: 0,
         };
         let at = arriving(&light, [0.0; 3]);
         assert_eq!(at.direction, [0.0, 1.0, 0.0]);

@@ -9,7 +9,7 @@ use super::comb::{Combs, Cursor};
 use super::fields::Fields;
 use super::panel::Panels;
 use super::penumbra::Cone;
-use super::scene::Integrator;
+use super::scene::{Integrator, Light};
 use super::surface::{MAX_STEPS, Walker, start};
 use crate::real::{Real, Vec3, add, scale, smallest, splat};
 use vol_compiler::frame::Quadrature;
@@ -45,26 +45,39 @@ impl<R: Real> ShadowRay<R> {
 
 impl<F: Fields> Integrator<'_, F> {
     /// Fraction of the light that arrives, per channel.
-    pub(crate) fn visibility(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<Vec3<F::Real>> {
+    pub(crate) fn visibility(
+        &mut self,
+        rays: &[ShadowRay<F::Real>],
+        light: &Light<F::Real>,
+    ) -> Vec<Vec3<F::Real>> {
         self.stats.shadow_rays += rays.len() as u64;
         let mut parts = Vec::with_capacity(rays.len());
         for batch in rays.chunks(self.batches.rays) {
             let blocked = self.blocked(batch).into_iter();
             parts.extend(blocked.map(|blocked| if blocked { F::Real::ZERO } else { F::Real::ONE }));
         }
-        self.through_media(rays, &parts)
+        self.through_media(rays, &parts, light)
     }
 
     /// Fraction of lights with a size that arrives, per channel: the part that no solid hides, weakened by
     /// the media towards the centre.
-    pub(super) fn soft_visibility(&mut self, cones: &[Cone<F::Real>]) -> Vec<Vec3<F::Real>> {
+    pub(super) fn soft_visibility(
+        &mut self,
+        cones: &[Cone<F::Real>],
+        light: &Light<F::Real>,
+    ) -> Vec<Vec3<F::Real>> {
         let parts = self.lit_parts(cones);
         let rays: Vec<_> = cones.iter().map(|cone| cone.shadow).collect();
-        self.through_media(&rays, &parts)
+        self.through_media(&rays, &parts, light)
     }
 
     /// The part of each light that solids let through, weakened by the media.
-    fn through_media(&mut self, rays: &[ShadowRay<F::Real>], parts: &[F::Real]) -> Vec<Vec3<F::Real>> {
+    fn through_media(
+        &mut self,
+        rays: &[ShadowRay<F::Real>],
+        parts: &[F::Real],
+        light: &Light<F::Real>,
+    ) -> Vec<Vec3<F::Real>> {
         let mut all = Vec::with_capacity(rays.len());
         let batches = rays.chunks(self.batches.rays).zip(parts.chunks(self.batches.rays));
         for (batch, parts) in batches {
@@ -73,7 +86,7 @@ impl<F: Fields> Integrator<'_, F> {
             let free: Vec<usize> = (0..batch.len()).filter(|&ray| parts[ray] > F::Real::ZERO).collect();
             let paths: Vec<_> = free.iter().map(|&ray| batch[ray].ray).collect();
             let ends: Vec<_> = free.iter().map(|&ray| batch[ray].length).collect();
-            for (ray, depth) in free.into_iter().zip(self.optical_depth(&paths, &ends)) {
+            for (ray, depth) in free.into_iter().zip(self.depth_towards(light, &paths, &ends)) {
                 let dark = smallest(depth) > F::Real::from_f32(OPAQUE);
                 let weakened = scale(depth.map(Real::decay), parts[ray]);
                 seen[ray] = if dark { splat(F::Real::ZERO) } else { weakened };
@@ -81,6 +94,20 @@ impl<F: Fields> Integrator<'_, F> {
             all.extend(seen);
         }
         all
+    }
+
+    /// Optical depth between the start of each ray and the light at its end: of the light's grid where it has
+    /// one.
+    fn depth_towards(
+        &mut self,
+        light: &Light<F::Real>,
+        rays: &[Ray<F::Real>],
+        ends: &[F::Real],
+    ) -> Vec<Vec3<F::Real>> {
+        if let Some(grid) = self.scene.grid(light) {
+            return rays.iter().map(|ray| grid.depth(ray.origin)).collect();
+        }
+        self.optical_depth(rays, ends)
     }
 
     /// Whether the ray enters a solid before it reaches the light.
@@ -117,7 +144,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Integral of the extinction along each ray.
-    fn optical_depth(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Vec3<F::Real>> {
+    pub(super) fn optical_depth(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Vec3<F::Real>> {
         if let Some(depths) = self.reference_depth(rays, ends) {
             return depths;
         }
@@ -127,14 +154,7 @@ impl<F: Fields> Integrator<'_, F> {
         let mut active = combs.active();
         while !active.is_empty() {
             let before = self.stats.shadow_samples + self.stats.region_evaluations;
-            // Optical depth of each node or panel, all media together.
-            let mut steps = vec![splat(F::Real::ZERO); active.len() * nodes as usize];
-            for medium in 0..self.scene.media.len() {
-                match self.scene.quadrature {
-                    Quadrature::Midpoint => self.node_depths(medium, rays, &combs, &active, &mut steps),
-                    Quadrature::Corrected => self.panel_depths(medium, rays, &combs, &active, &mut steps),
-                }
-            }
+            let steps = self.step_depths(rays, &combs, &active);
             let spent = self.stats.shadow_samples + self.stats.region_evaluations - before;
             if self.is_broke(spent) {
                 break;
@@ -151,6 +171,23 @@ impl<F: Fields> Integrator<'_, F> {
             });
         }
         depths
+    }
+
+    /// Optical depth of each of the next nodes or panels, all media together: one slot for each.
+    pub(super) fn step_depths(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+    ) -> Vec<Vec3<F::Real>> {
+        let mut steps = vec![splat(F::Real::ZERO); active.len() * self.batches.nodes as usize];
+        for medium in 0..self.scene.media.len() {
+            match self.scene.quadrature {
+                Quadrature::Midpoint => self.node_depths(medium, rays, combs, active, &mut steps),
+                Quadrature::Corrected => self.panel_depths(medium, rays, combs, active, &mut steps),
+            }
+        }
+        steps
     }
 
     /// Adds the optical depth of one medium at the next nodes.

@@ -1,5 +1,6 @@
 //! Pictures with known answers, and what must not change a picture.
 
+mod light_grids;
 mod media;
 mod reference;
 mod same;

@@ -162,7 +162,9 @@ fn stats(sandbox: &Sandbox) -> Result<(), Failed> {
         equal((key, number(key)? > 0.0), (key, true))?;
     }
     equal(number("estimate")? <= 0.05, true)?;
-    for phase in ["check", "compile", "prepare", "pilot", "render", "write"] {
+    let lights = stats["light_grids"].as_array().map(Vec::len);
+    equal((lights, stats["light_grids"][0]["depths"].as_str()), (Some(1), Some("direct")))?;
+    for phase in ["check", "compile", "prepare", "pilot", "grids", "render", "write"] {
         let time = stats["milliseconds"][phase].as_f64();
         equal((phase, time.is_some_and(|time| time >= 0.0)), (phase, true))?;
     }

@@ -82,7 +82,9 @@ impl Tube {
         iterate::leave(lowerer, outer_steps);
         let next = [&[number], &next?[..]].concat();
         let first = [&[zero], first].concat();
-        let last = lowerer.graph.repeat(most, Repeated { state: &state, first: &first, next: &next, goes_on: exists });
+        let last = lowerer
+            .graph
+            .repeat(most, Repeated { state: &state, first: &first, next: &next, goes_on: exists });
         Ok(last[1..].to_vec())
     }
 

@@ -14,6 +14,8 @@ struct Arriving {
     irradiance: vec3f,
     shadows: bool,
     slope: f32,
+    // Word of the light's grid, 0 for none.
+    grid: u32,
 }
 
 fn light_count() -> u32 {
@@ -33,7 +35,8 @@ fn arriving(light: u32, point: vec3f) -> Arriving {
     let shadows = vol_input[at + 7u] != 0.0;
     let size = vol_input[at + 8u];
     let slope = select(min(size / distance, MAX_SPREAD_TANGENT), size, distant);
-    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope);
+    let grid = u32(vol_input[at + 10u]);
+    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid);
 }
 
 // Radiance that leaves a contact towards the eye.
@@ -73,10 +76,10 @@ fn surface_visibility(lamp: Arriving, contact: Contact) -> vec3f {
     let origin = contact.position + (contact.normal * offset);
     if (SOFT_LIGHTS) {
         if (lamp.slope > 0.0) {
-            return soft_visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.slope);
+            return soft_visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.slope, lamp.grid);
         }
     }
-    return visibility(Ray(origin, lamp.direction), lamp.distance, bias);
+    return visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.grid);
 }
 
 // Radiance towards the eye per irradiance on a facing plane.

@@ -2,26 +2,34 @@
 // Twin: runtime-cpu/src/render/shadow.rs, which says why.
 
 // Fraction of the light that arrives, per channel.
-fn visibility(ray: Ray, distance: f32, bias: f32) -> vec3f {
+fn visibility(ray: Ray, distance: f32, bias: f32, grid: u32) -> vec3f {
     counted_rays += 1u;
     let part = select(1.0, 0.0, blocked(ray, distance, 0.25 * bias));
-    return through_media(ray, distance, part);
+    return through_media(ray, distance, part, grid);
 }
 
 // Fraction of a light with a size that arrives, per channel.
-fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32) -> vec3f {
+fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
     let part = lit_part_of(ray, distance, 0.25 * bias, slope);
-    return through_media(ray, distance, part);
+    return through_media(ray, distance, part, grid);
 }
 
 // The part of a light that solids let through, weakened by the media.
-fn through_media(ray: Ray, distance: f32, part: f32) -> vec3f {
+fn through_media(ray: Ray, distance: f32, part: f32, grid: u32) -> vec3f {
     // Only what solids do not hide goes through the media.
     if (part <= 0.0) {
         return vec3f(0.0);
     }
-    let depth = optical_depth(ray, distance);
+    let depth = depth_towards(ray, distance, grid);
     return select(decay3(depth) * part, vec3f(0.0), smallest(depth) > OPAQUE);
+}
+
+// Optical depth between a point and a light: of its grid where it has one.
+fn depth_towards(ray: Ray, distance: f32, grid: u32) -> vec3f {
+    if (grid != 0u) {
+        return grid_depth(grid, ray.origin);
+    }
+    return optical_depth(ray, distance);
 }
 
 // Whether a place on a ray with a shortest step is inside a solid: at first twice the bias does not count.

@@ -103,6 +103,7 @@ fn frame(program: &Program) -> Frame {
             size: 0.0,
             occlusion: 0.0,
         }],
+        light_grids: Vec::new(),
         background: [13.0, 14.0, 15.0],
         bounds: whole,
     }
@@ -143,10 +144,42 @@ fn words_stand_where_the_shader_looks() {
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
     assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-    let cells = lights + 10;
+    let cells = lights + 11;
     assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., cells as f32, 2.0]);
-    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0]);
+    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
     assert_eq!(words[cells..], [0.0; 12], "two cells");
+}
+
+#[test]
+fn grids_stand_where_the_records_say() {
+    let program = program(2, 1);
+    let mut frame = frame(&program);
+    let sun = frame.lights[0];
+    frame.lights = vec![sun; 3];
+    let grid = |depths: Vec<f32>| {
+        let [a, b, c] = [[2.0; 3], [3.0; 3], [4.0; 3]];
+        let (counts, tint) = ([2, 2, 5], [0.5, 1.0, 2.0]);
+        let colored = depths.len() > 20;
+        let (distant, origin, axes) = (true, [1.0; 3], [a, b, c]);
+        let grid =
+            LightGrid { distant, origin, axes, lo: [5.0; 3], scale: [6.0; 3], counts, tint, colored, depths };
+        Some(std::sync::Arc::new(grid))
+    };
+    frame.light_grids = vec![grid(vec![7.0; 20]), None, grid(vec![9.0; 60])];
+    let job = Job { size: [4, 4], step: 0.1, shadow_step: 0.2, sampling: Sampling::CENTRE };
+    let mut words = frame_words(&program, &frame, &job, [0; 4], 1);
+    words.extend(grid_words(&frame, words.len()));
+    let word = |at: usize| f32::from_bits(words[at]);
+    let lights = HEADER_WORDS + 2 * OBJECT_WORDS + MEDIUM_WORDS;
+    let [first, none, last] = [0, 1, 2].map(|light| word(lights + LIGHT_WORDS * light + 10) as usize);
+    assert_eq!(none, 0);
+    for (record, channels, depth, count) in [(first, 1.0, 7.0, 20), (last, 3.0, 9.0, 60)] {
+        assert_eq!((word(record), word(record + 4), word(record + 16)), (1.0, 2.0, 6.0));
+        assert_eq!([19, 20, 21, 22, 24, 25].map(|at| word(record + at)), [2.0, 2.0, 5.0, 0.5, 2.0, channels]);
+        let depths = word(record + 26) as usize;
+        assert_eq!((depths % 64, word(depths), word(depths + count - 1)), (0, depth, depth));
+    }
+    assert_eq!(words.len(), word(last + 26) as usize + 60);
 }
 
 #[test]

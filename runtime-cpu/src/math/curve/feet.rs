@@ -59,11 +59,7 @@ pub fn feet_of(p: [f32; 3], piece: &Piece, closed: bool) -> [f32; 3] {
     let left = piece.sense * at_end > 0.0;
     let inside = !is_point & left & (approached | found.dips);
     let (first, last) = if forward { (0.0, 1.0) } else { (1.0, 0.0) };
-    [
-        if enters { first } else { -1.0 },
-        if inside { found.t } else { -1.0 },
-        if leaves { last } else { -1.0 },
-    ]
+    [if enters { first } else { -1.0 }, if inside { found.t } else { -1.0 }, if leaves { last } else { -1.0 }]
 }
 
 /// The first foot whose number is at least `from` and whose distance is at most `most`.

@@ -32,7 +32,13 @@ fn by(world: &World, method: Method, job: &Job) -> (Image, Stats) {
 }
 
 fn job(step: f32, samples: u32) -> Job {
-    Job { size: [SIZE; 2], step, shadow_step: step, quadrature: Quadrature::Midpoint, sampling: Sampling::uniform(samples) }
+    Job {
+        size: [SIZE; 2],
+        step,
+        shadow_step: step,
+        quadrature: Quadrature::Midpoint,
+        sampling: Sampling::uniform(samples),
+    }
 }
 
 fn fixed(jitter: Option<u64>) -> Method {

@@ -188,6 +188,7 @@ impl World {
             objects: Vec::new(),
             media: Vec::new(),
             lights: Vec::new(),
+            light_grids: Vec::new(),
             background: [0.0; 3],
             bounds: Aabb { lo: [-1.0; 3], hi: [1.0; 3] },
         };

@@ -75,7 +75,11 @@ fn boxes_hold_their_pieces() {
     for shift in [0.0, 1000.0] {
         let segments: Vec<Quadratic> = curve_of(&mut dice, 3, 100)
             .into_iter()
-            .map(|s| Quadratic { a: s.a.map(|x| x + shift), b: s.b.map(|x| x + shift), c: s.c.map(|x| x + shift) })
+            .map(|s| Quadratic {
+                a: s.a.map(|x| x + shift),
+                b: s.b.map(|x| x + shift),
+                c: s.c.map(|x| x + shift),
+            })
             .collect();
         let CurveTable { pieces, nodes, .. } = prepare(&segments);
         for node in &nodes {
@@ -211,6 +215,10 @@ fn cost_by_length() {
             let sum: f32 = points.iter().map(|&p| closest(p, &table.pieces, nodes).distance).sum();
             (start.elapsed().as_secs_f64() / points.len() as f64 * 1e9, sum)
         };
-        println!("{count}: {:.0} ns, all {:.0} ns, prepared in {prepared:?}", time(&table.nodes).0, time(&[]).0);
+        println!(
+            "{count}: {:.0} ns, all {:.0} ns, prepared in {prepared:?}",
+            time(&table.nodes).0,
+            time(&[]).0
+        );
     }
 }

@@ -1,0 +1,75 @@
+// Optical depth between a light and a point, looked up in the light's grid.
+// Twin: runtime-cpu/src/render/light_grid.rs, which says why.
+
+// Depth at a point; `grid` is the word of the grid's record.
+fn grid_depth(grid: u32, point: vec3f) -> vec3f {
+    // Find the point as the light sees it.
+    let origin = word3(grid + 1u);
+    let lo = word3(grid + 13u);
+    let scale = word3(grid + 16u);
+    let counts = word3(grid + 19u);
+    let distant = vol_input[grid] != 0.0;
+    let off = point - origin;
+    let u = dot3(off, word3(grid + 4u));
+    let v = dot3(off, word3(grid + 7u));
+    let w = dot3(off, word3(grid + 10u));
+    let ahead = distant | (w > (0.5 * lo.z));
+    let divisor = select(1.0, w, ahead & !distant);
+    let seen = vec3f(u / divisor, v / divisor, select(length3(off), w, distant));
+    let last = counts - vec3f(1.0);
+    let place = (seen - lo) * scale;
+    let beside = (place.x < 0.0) | (place.x > last.x) | (place.y < 0.0) | (place.y > last.y);
+    // Nothing is before the grid or beside it.
+    if (!ahead | beside | (place.z <= 0.0)) {
+        return vec3f(0.0);
+    }
+    // Behind it nothing is added.
+    let channels = u32(vol_input[grid + 25u]);
+    let column = channels * u32(counts.z);
+    let x = stencil(place.x, last.x, column * u32(counts.y));
+    let y = stencil(place.y, last.y, column);
+    let z = stencil(min(place.z, last.z), last.z, channels);
+    let first = u32(vol_input[grid + 26u]);
+    let tint = word3(grid + 22u);
+    let red = grid_channel(first, x, y, z);
+    if (channels == 1u) {
+        return tint * red;
+    }
+    return tint * vec3f(red, grid_channel(first + 1u, x, y, z), grid_channel(first + 2u, x, y, z));
+}
+
+// One channel between the points around; what the cubic overshoots below 0 is cut off.
+fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil) -> f32 {
+    var sum = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        for (var j = 0u; j < 4u; j++) {
+            let row = (first + x.at[i]) + y.at[j];
+            let ab = (z.weights.x * vol_input[row + z.at.x]) + (z.weights.y * vol_input[row + z.at.y]);
+            let abc = ab + (z.weights.z * vol_input[row + z.at.z]);
+            let column = abc + (z.weights.w * vol_input[row + z.at.w]);
+            sum += (x.weights[i] * y.weights[j]) * column;
+        }
+    }
+    return max(sum, 0.0);
+}
+
+// The four points around a place along one axis.
+struct Stencil {
+    // Words from the first point of the axis to each; where there is none the last one counts twice.
+    at: vec4u,
+    weights: vec4f,
+}
+
+// `place` in 0..`last`, points `words` words apart.
+fn stencil(place: f32, last: f32, words: u32) -> Stencil {
+    let index = min(floor(place), last - 1.0);
+    let t = place - index;
+    let weights = vec4f(
+        (((1.0 - (0.5 * t)) * t) - 0.5) * t,
+        ((((1.5 * t) - 2.5) * t) * t) + 1.0,
+        (((2.0 - (1.5 * t)) * t) + 0.5) * t,
+        (((0.5 * t) - 0.5) * t) * t,
+    );
+    let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
+    return Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);
+}

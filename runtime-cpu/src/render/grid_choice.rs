@@ -1,0 +1,237 @@
+//! Chooses for each light whether its shadows in media come from a grid, and how fine that is.
+//!
+//! Grids grow finer until the pilot's rays look as they do with direct marching, or until filling them would
+//! cost more than it saves or not fit the memory; then shadow rays go on marching. Costs are counted in
+//! evaluations, not timed: the choice must not depend on how busy the machine is, nor on the backend.
+//!
+//! Rays are compared, not single points: their error is what was asked for, and at points that of a grid is
+//! ten times as large as in rays, which are means over many nodes (so is that of marching).
+
+use super::fields::Batch;
+use super::film::Radiance;
+use super::light_grid::{self, Grid};
+use super::pilot::{MOST_BUDGET, Pilot, choose_step, cost};
+use super::scene::{Medium, Scene};
+use crate::interp::Tapes;
+use std::sync::Arc;
+use vol_compiler::frame::{Aabb, Frame, Job, LightFrame, LightGrid, Sampling};
+use vol_compiler::program::Program;
+
+/// Intervals along the longest side of the first grid.
+const FIRST_INTERVALS: u32 = 32;
+
+/// Most words of all grids together, 96 MiB: a buffer that any device can bind holds 128 MiB.
+const MAX_WORDS: usize = 24 << 20;
+
+/// Filling grids may cost this part of marching directly: looking up costs something, too.
+const PAYS: f64 = 0.5;
+
+/// Evaluations per node where none has been counted yet: region and extinction.
+const EVALUATIONS_PER_NODE: f64 = 2.0;
+
+/// The step of the marching that a grid is compared with, over that of shadow rays.
+const TEST_STEP: f32 = 0.5;
+
+/// Part of the allowed error that a grid may have.
+const PART: f32 = 0.5;
+
+/// Part of that error which the next grid is meant to have, if the error falls with the square of the
+/// distance between points.
+const AIM: f32 = 0.7;
+
+/// The error falls at best with this power: if even that does not suffice there will be no grid.
+const BEST_ORDER: i32 = 3;
+
+/// The next grid has at least this many times as many points along an axis.
+const LEAST_STEP: f32 = 1.1;
+
+/// Part of the room that is left which rounding of the numbers of points does not exceed.
+const ROOM: f32 = 0.98;
+
+/// Samples that the pilot's rays may take at a time: a few times what they took to choose the step.
+const LIMIT: u64 = 4 * MOST_BUDGET;
+
+/// Samples of a pixel that adaptive sampling is taken to need.
+const ADAPTIVE_SAMPLES: u32 = 9;
+
+/// What was chosen for a light.
+#[derive(Clone, Debug, Default)]
+pub struct GridChoice {
+    /// For [`Frame::light_grids`]; none to march.
+    pub grid: Option<Arc<LightGrid>>,
+    /// Error of the grid, or of the finest one that was tried: rms over the pilot's rays of the difference
+    /// to marching with half the step, over the rms of their colour.
+    pub error: Option<f32>,
+}
+
+/// A choice for each light of a frame, given the picture to be rendered and the error that is allowed in it.
+/// Grids that the frame holds already do not count. The result depends on the arguments alone.
+#[must_use]
+pub fn choose_light_grids(program: &Program, frame: &Frame, job: &Job, max_error: f32) -> Vec<GridChoice> {
+    let mut choices = vec![GridChoice::default(); frame.lights.len()];
+    let shadows = frame.lights.iter().any(|light| light.shadows);
+    let scene = plain_scene(frame, job);
+    let Some(bounds) = around(&scene.media).filter(|_| shadows) else {
+        return choices;
+    };
+    let tapes = Tapes::new(program);
+    let pilot = Pilot::new(frame, &tapes, job.size);
+    let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
+    let Some(((wanted, _), costs)) = pilot.expose_scene(&fine, LIMIT).zip(costs(frame, job, &pilot)) else {
+        return choices;
+    };
+    let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
+    let mut trial = Trial {
+        tapes: &tapes,
+        frame,
+        pilot: &pilot,
+        wanted,
+        // The errors of several lights add up like those of independent measurements.
+        target: PART * max_error / (asked.max(1) as f32).sqrt(),
+        words: MAX_WORDS / asked.max(1),
+        bounds,
+        fine,
+        scene,
+    };
+    for (index, choice) in choices.iter_mut().enumerate() {
+        *choice = trial.choose(index, costs[index]);
+    }
+    choices
+}
+
+/// A frame without the grids that it holds.
+fn plain_scene(frame: &Frame, job: &Job) -> Scene<f32> {
+    let mut scene = Scene::new(frame, job);
+    scene.grids.clear();
+    scene
+}
+
+/// The box around all media.
+fn around(media: &[Medium<f32>]) -> Option<Aabb> {
+    let boxes = media.iter().map(|medium| Aabb { lo: medium.lo, hi: medium.hi });
+    boxes.reduce(|a, b| Aabb {
+        lo: [0, 1, 2].map(|axis| a.lo[axis].min(b.lo[axis])),
+        hi: [0, 1, 2].map(|axis| a.hi[axis].max(b.hi[axis])),
+    })
+}
+
+/// Evaluations that marching towards each light would take in the whole picture, from a few rays with the
+/// shadows of that light alone; nothing if even those are too many.
+fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>) -> Option<Vec<f64>> {
+    let spent = |light: Option<usize>| {
+        let mut scene = plain_scene(frame, job);
+        scene.lights.iter_mut().for_each(|other| other.shadows &= Some(other.index) == light);
+        pilot.expose_scene(&scene, LIMIT).map(|(_, stats)| cost(&stats) as f64)
+    };
+    let samples = if job.sampling.tolerance > 0.0 {
+        job.sampling.most.min(ADAPTIVE_SAMPLES)
+    } else {
+        job.sampling.most
+    };
+    let scale = pilot.scale * f64::from(samples);
+    let without = spent(None)?;
+    let cost = |(index, light): (usize, &LightFrame)| {
+        if light.shadows { Some((spent(Some(index))? - without) * scale) } else { Some(0.0) }
+    };
+    frame.lights.iter().enumerate().map(cost).collect()
+}
+
+/// What the trials of all lights have in common.
+struct Trial<'a> {
+    tapes: &'a Tapes,
+    frame: &'a Frame,
+    pilot: &'a Pilot<'a>,
+    scene: Scene<f32>,
+    /// The same with the step that grids are compared with.
+    fine: Scene<f32>,
+    /// Around all media.
+    bounds: Aabb,
+    /// The pilot's rays with that step.
+    wanted: Vec<Radiance<f32>>,
+    /// Error that a grid may have.
+    target: f32,
+    /// Words that a grid may have.
+    words: usize,
+}
+
+impl Trial<'_> {
+    /// Tries finer and finer grids for a light; `cost` is that of marching.
+    fn choose(&mut self, light: usize, cost: f64) -> GridChoice {
+        let mut choice = GridChoice::default();
+        let (mut spent, mut per_node, mut channels) = (0.0, EVALUATIONS_PER_NODE, 1);
+        let mut intervals = FIRST_INTERVALS;
+        loop {
+            let layout = LightGrid::layout(&self.frame.lights[light], &self.bounds, intervals);
+            let nodes = layout.as_ref().and_then(|layout| light_grid::nodes(layout, self.scene.shadow_step));
+            let (Some(layout), Some(nodes)) = (layout, nodes) else { break };
+            let words = layout.points() * channels;
+            if spent + nodes as f64 * per_node > PAYS * cost || words > self.words {
+                break;
+            }
+            let Some((grid, evaluations)) =
+                light_grid::fill(layout, &self.scene, || Batch::new(self.tapes, self.frame))
+            else {
+                break;
+            };
+            let grid = Arc::new(grid);
+            spent += evaluations as f64;
+            per_node = evaluations as f64 / nodes as f64;
+            channels = if grid.colored { 3 } else { 1 };
+            let error = self.error(light, &grid);
+            choice.error = Some(error);
+            let words = grid.depths.len();
+            if error <= self.target && words <= self.words {
+                choice.grid = Some(grid);
+                break;
+            }
+            // As fine as seems needed, as memory allows, and not more than twice as fine at once.
+            let room = (self.words as f32 / words as f32).cbrt();
+            let needed = (error / (AIM * self.target)).sqrt();
+            let finer = needed.clamp(LEAST_STEP, 2.0).min(ROOM * room);
+            if finer < LEAST_STEP || error > self.target * room.powi(BEST_ORDER) {
+                break;
+            }
+            intervals = (finer * intervals as f32) as u32;
+        }
+        choice
+    }
+
+    /// What a grid of a light changes in the pilot's rays.
+    fn error(&mut self, light: usize, grid: &Arc<LightGrid>) -> f32 {
+        self.fine.grids.resize_with(light, || None);
+        self.fine.grids.push(Some(Grid::new(grid)));
+        let got = self.pilot.expose_scene(&self.fine, LIMIT);
+        self.fine.grids.clear();
+        got.map_or(f32::INFINITY, |(got, _)| self.pilot.difference(&got, &self.wanted))
+    }
+}
+
+/// All that is chosen for a picture.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// How to sample it.
+    pub job: Job,
+    /// For each light; the frame has the grids already.
+    pub grids: Vec<GridChoice>,
+    /// Estimated root mean square error of the picture's colours over that of the colours, of steps and grids
+    /// together; above what was asked for if that could not be met.
+    pub estimate: f32,
+}
+
+/// Chooses steps ([`choose_step`]) and grids ([`choose_light_grids`]) for a picture with an error of at most
+/// `max_error`, and puts the grids into the frame. The result depends on the arguments alone.
+pub fn choose(
+    program: &Program,
+    frame: &mut Frame,
+    size: [u32; 2],
+    sampling: Sampling,
+    max_error: f32,
+) -> Choice {
+    let steps = choose_step(program, frame, size, max_error);
+    let job = steps.job(size, sampling);
+    let grids = choose_light_grids(program, frame, &job, max_error);
+    frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
+    let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
+    let estimate = taken.fold(steps.estimate, f32::hypot);
+    Choice { job, grids, estimate }
+}

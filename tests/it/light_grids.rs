@@ -1,0 +1,100 @@
+//! Grids of optical depth: pictures with and without them, on both backends.
+
+use crate::support::{Body, Draw, compile, ensure, frame, on_both, render};
+use libtest_mimic::Failed;
+use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
+use vol_compiler::program::Program;
+
+/// The trials of this file.
+pub(crate) fn trials() -> Vec<libtest_mimic::Trial> {
+    let bodies: [(&str, Body); 3] = [
+        ("sun_through_a_cloud", sun_through_a_cloud),
+        ("two_lights_and_a_solid", two_lights_and_a_solid),
+        ("lamp_in_a_cloud", lamp_in_a_cloud),
+    ];
+    bodies.into_iter().flat_map(|(name, body)| on_both(&format!("light_grids::{name}"), body)).collect()
+}
+
+/// The camera and background of all scenes.
+const VIEW: &str =
+    "camera { from: (1, 2, 6), at: (0, 0, 0), fov: 30deg }\nrender { background: (0.1, 0.2, 0.3) }\n";
+
+/// A cloud that is grey where `absorb` is.
+fn cloud(absorb: &str) -> String {
+    format!(
+        "medium cloud {{\n  region: sphere(1)\n  density: q => 6 * max(0, fbm(2 * q.local, 3) + 0.2)\n  \
+         scatter: (0.9, 0.8, 0.5)\n  absorb: {absorb}\n}}\n"
+    )
+}
+
+const SIZE: [u32; 2] = [24, 24];
+
+/// Error that is allowed.
+const MAX_ERROR: f32 = 1e-2;
+
+/// Grids as for a large picture, of which a small one is drawn.
+fn with_grids(program: &Program, job: &Job) -> Result<Frame, Failed> {
+    let mut frame = frame(program, 0.0, SIZE)?;
+    let large = Job { size: [4096, 4096], ..*job };
+    let choices = vol_runtime_cpu::choose_light_grids(program, &frame, &large, MAX_ERROR);
+    frame.light_grids = choices.into_iter().map(|choice| choice.grid).collect();
+    Ok(frame)
+}
+
+/// Relative rms of the difference of two pictures, and its largest value.
+fn apart(a: &Image, b: &Image) -> (f64, f64) {
+    let (mut changed, mut whole, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (a, b) in a.pixels.iter().zip(&b.pixels) {
+        for (a, b) in a.color.iter().zip(b.color) {
+            let off = f64::from(*a) - f64::from(b);
+            changed += off * off;
+            whole += f64::from(b) * f64::from(b);
+            largest = largest.max(off.abs());
+        }
+    }
+    ((changed / whole).sqrt(), largest)
+}
+
+/// Draws a scene whose lights have grids as `wanted` says: like marching to what is allowed, and on both
+/// backends alike.
+fn looks_like_marching(draw: &Draw<'_>, text: &str, wanted: &[bool]) -> Result<(), Failed> {
+    let program = compile("test.vol", &format!("{VIEW}{text}"))?;
+    let job = Job {
+        size: SIZE,
+        step: 0.02,
+        shadow_step: 0.02,
+        quadrature: Quadrature::Midpoint,
+        sampling: Sampling::CENTRE,
+    };
+    let frame = with_grids(&program, &job)?;
+    let grids: Vec<bool> = frame.light_grids.iter().map(Option::is_some).collect();
+    ensure(grids == wanted, || format!("grids of lights: {grids:?} instead of {wanted:?}"))?;
+    let drawn = draw(&program, &frame, &job)?;
+    let (twin, most) = apart(&drawn, &render(&program, &frame, &job, 2)?);
+    ensure(twin < 1e-5 && most < 1e-3, || format!("rms {twin:e}, most {most:e} off the CPU"))?;
+    let marched = draw(&program, &Frame { light_grids: Vec::new(), ..frame }, &job)?;
+    let (error, _) = apart(&drawn, &marched);
+    let changes = wanted.contains(&true);
+    let (least, most) = if changes { (1e-6, f64::from(MAX_ERROR)) } else { (-1.0, 1e-9) };
+    ensure(error > least && error < most, || format!("rms {error:e} off marching"))
+}
+
+fn sun_through_a_cloud(draw: &Draw<'_>) -> Result<(), Failed> {
+    for absorb in ["0.1", "(0.1, 0.2, 0.5)", "q => 0.3 * vec3(1, q.radius, 0)"] {
+        let sun = "light sun { from: (-0.35, 0.8, 0.5), color: 8 }\n";
+        looks_like_marching(draw, &format!("{}{sun}", cloud(absorb)), &[true])?;
+    }
+    Ok(())
+}
+
+fn two_lights_and_a_solid(draw: &Draw<'_>) -> Result<(), Failed> {
+    let rest = "object ground { shape: box((6, 0.2, 6)).translate((0, -1.4, 0)), material: diffuse(0.6) }\n\
+                light sun { from: (-0.35, 0.8, 0.5), color: 8 }\n\
+                light lamp { at: (3, 4, 1), color: (90, 60, 30) }\n";
+    looks_like_marching(draw, &format!("{}{rest}", cloud("0.1")), &[true, true])
+}
+
+fn lamp_in_a_cloud(draw: &Draw<'_>) -> Result<(), Failed> {
+    let lamp = "light lamp { at: (0.2, 0.3, 0.1), color: 3 }\n";
+    looks_like_marching(draw, &format!("{}{lamp}", cloud("0.1")), &[false])
+}

@@ -39,6 +39,8 @@ pub(crate) enum Command {
     Diff(Diff),
     /// Look for trouble with the numbers of a scene: NaN, lost digits, jumps, steps too long, slow rays
     Stress(Stress),
+    /// Measure run time against error over a ladder of settings
+    Bench(Bench),
 }
 
 /// Which scene at which moment.
@@ -244,6 +246,40 @@ pub(crate) struct Stress {
     /// `human` writes messages to stderr and a table to stdout, `json` both to stdout, one object a line
     #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
     pub(crate) message_format: MessageFormat,
+}
+
+/// Arguments of `vol bench`.
+#[derive(Debug, Args)]
+pub(crate) struct Bench {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// Folder for SCENE.csv, SCENE.md, SCENE.svg and SCENE.png, made where it is missing
+    #[arg(short, long, value_name = "FOLDER", default_value = "bench")]
+    pub(crate) output: PathBuf,
+    /// What computes the pictures; `both` leaves the GPU out, with a note, where there is none
+    #[arg(long, value_enum, default_value_t = BenchBackend::Both)]
+    pub(crate) backend: BenchBackend,
+    /// Size of the pictures [default: the scene's, at most 256 pixels wide and high]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<Size>,
+    /// Errors to ask for, as with `vol render --max-error`
+    #[arg(long, value_name = "E,…", value_delimiter = ',', value_parser = values::max_error, default_values_t = [3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4])]
+    pub(crate) max_error: Vec<f32>,
+    /// Pixels at which pictures are compared with the reference
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) places: u32,
+    /// Folder in which references are kept [default: `vol/references` in the user's cache]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) cache: Option<PathBuf>,
+}
+
+/// What computes the pictures of a benchmark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BenchBackend {
+    Cpu,
+    Gpu,
+    Both,
 }
 
 /// What computes a picture.

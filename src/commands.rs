@@ -3,6 +3,7 @@
 //! Data goes to standard output, everything about the work (diagnostics, progress, summary) to
 //! standard error.
 
+mod bench;
 mod check;
 mod compile;
 mod diff;
@@ -50,6 +51,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Query(arguments) => query::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
         Command::Stress(arguments) => stress::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
     }
 }
 

@@ -136,7 +136,7 @@ impl<F: Fields> Integrator<'_, F> {
         step: F::Real,
         outside: bool,
     ) -> Vec<March<F::Real>> {
-        let Some((lo, hi)) = self.box_of_media() else { return Vec::new() };
+        let Some([lo, hi]) = self.box_of_media() else { return Vec::new() };
         let most = F::Real::from_index(MAX_NODES);
         let start = |(ray, (path, &end)): (usize, (&Ray<F::Real>, &F::Real))| {
             let span = slab(path, lo, hi);
@@ -152,10 +152,11 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Smallest box around the boxes of all media.
-    fn box_of_media(&self) -> Option<(Vec3<F::Real>, Vec3<F::Real>)> {
-        let boxes = self.scene.media.iter().map(|medium| (medium.lo, medium.hi));
-        boxes.reduce(|(lo, hi), (l, h)| {
-            ([0, 1, 2].map(|axis| lo[axis].min(l[axis])), [0, 1, 2].map(|axis| hi[axis].max(h[axis])))
+    fn box_of_media(&self) -> Option<[Vec3<F::Real>; 2]> {
+        let boxes = self.scene.media.iter().map(|medium| [medium.lo, medium.hi]);
+        boxes.reduce(|[lo, hi], other| {
+            let axes = [0, 1, 2];
+            [axes.map(|axis| lo[axis].min(other[0][axis])), axes.map(|axis| hi[axis].max(other[1][axis]))]
         })
     }
 
@@ -172,7 +173,7 @@ impl<F: Fields> Integrator<'_, F> {
             marches.iter().zip(&probes).map(|(march, &t)| rays[march.ray].at(t)).collect();
         let axes = axes.unwrap_or_default().iter().enumerate();
         let near: Vec<_> =
-            axes.map(|(medium, axis)| self.from_medium(medium, axis.as_ref(), &points)).collect();
+            axes.map(|(medium, axis)| self.place_by_medium(medium, axis.as_ref(), &points)).collect();
         let mut round =
             Round { samples: Vec::with_capacity(marches.len()), inside: vec![Vec::new(); near.len()] };
         for (index, (march, t)) in marches.iter_mut().zip(probes).enumerate() {

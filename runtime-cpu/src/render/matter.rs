@@ -53,7 +53,8 @@ pub(super) fn bounds(
     let of_shadows = shadow[1..4].iter().map(|extinction| most(shadow[0], extinction));
     let larger = |most: f64, bound: f64| if bound.is_nan() { f64::NAN } else { most.max(bound) };
     let extinction = of_camera.chain(of_shadows).fold(0.0, larger);
-    let glows = !(interior[0].hi <= 0.0) && interior[7..10].iter().any(|emission| !(emission.hi <= 0.0));
+    let may_be = |bound: &Interval| bound.hi > 0.0 || bound.hi.is_nan();
+    let glows = may_be(&interior[0]) && interior[7..10].iter().any(may_be);
     Some(MatterBounds { extinction, glows })
 }
 

@@ -53,7 +53,7 @@ impl TubeAxis {
 
 impl<F: Fields> Integrator<'_, F> {
     /// Where points are from a medium: by the axis of its tube, else by the signed distance of its region.
-    pub(super) fn from_medium(
+    pub(super) fn place_by_medium(
         &mut self,
         medium: usize,
         axis: Option<&TubeAxis>,

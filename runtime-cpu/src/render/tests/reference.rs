@@ -1,13 +1,19 @@
 //! The reference modes against closed forms, the comb and each other.
 
-use super::super::majorant::Majorants;
+use super::super::camera::Ray;
+use super::super::fields::Batch;
+use super::super::majorant::{Majorants, Tentative};
 use super::super::method::Way;
-use super::super::scene::Scene;
+use super::super::random::{Purpose, Stream};
+use super::super::scene::{Integrator, Scene};
 use super::super::{Batches, Method, Stats, TubeBounds, Watch, render_by, render_scene};
-use super::support::{Gas, World, constant, mixed, norm, sphere, toward};
+use super::support::{Body, Gas, World, constant, mixed, norm, sphere, toward};
+use crate::interp::Tapes;
+use crate::real::length;
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 use vol_compiler::frame::{Aabb, Image, Job, LightFrame, Quadrature, Sampling};
+use vol_compiler::ops::Op;
 use vol_compiler::program::Lighting;
 
 const SIZE: u32 = 8;
@@ -247,6 +253,56 @@ fn references_depend_on_neither_batches_nor_other_pixels() {
     let seeded = |seed| [fixed(Some(seed)), Method::MonteCarlo { seed }].map(|m| by(&world, m, &job).0);
     let ([a, b], [c, d]) = (seeded(1), seeded(2));
     assert!(a != c && b != d);
+}
+
+/// Gas whose bounds are loose, so thick that what arrives is up to roulette.
+#[test]
+fn roulette_keeps_the_mean() {
+    let mut world = World::new([0.0, 0.0, 4.0], SLOPE as f32);
+    let gas = Gas::uniform([1.0; 3], [0.0; 3], [4.0; 3], [0.0; 3], Lighting::None);
+    // 4 + 100 x - 100 x: intervals do not know that it is 4.
+    let mut body = Body::new("extinction", 3);
+    let (hundred, four) = (body.number(100.0), body.number(4.0));
+    let product = body.apply(Op::Mul, &[body.input(0), hundred]);
+    let more = body.apply(Op::Add, &[product, four]);
+    let same = body.apply(Op::Sub, &[more, product]);
+    world.medium(Gas { extinction: body.finish(&[same; 3]), ..gas });
+    let way = Way::new(Method::MonteCarlo { seed: 1 }, &world.program, &world.frame).expect("bounded");
+    let scene = Scene { way, ..Scene::new(&world.frame, &job(1.0, 1)) };
+    let tapes = Tapes::new(&world.program);
+    let fields = Batch::new(&tapes, &world.frame);
+    let mut integrator = Integrator::new(&scene, fields, Batches::DEFAULT);
+    let ray = |index: u16| Ray { origin: [f32::from(index) * 1e-5, 0.0, 4.0], direction: [0.0, 0.0, -1.0] };
+    let rays: Vec<_> = (0..60_000).map(ray).collect();
+    let depths = integrator.reference_depth(&rays, &vec![9.0; rays.len()]).expect("not the comb");
+    let (found, error) = mean(depths.iter().map(|depth| (-f64::from(depth[0])).exp()));
+    let expected = (-8.0_f64).exp();
+    assert!((found - expected).abs() < 4.0 * error, "{found} for {expected} within {error}");
+    assert!(error < 0.05 * expected, "{error}");
+}
+
+/// The cells that a path goes through are those where it is.
+#[test]
+fn paths_know_their_cell() {
+    let world = mixed();
+    let grid = Majorants::new(&world.program, &world.frame).expect("bounded");
+    let mut count = 0;
+    for index in 0..2000_u16 {
+        let turn = f32::from(index) * 0.37;
+        let direction = [turn.cos() * 0.8, 0.6 * (0.3 * turn).sin(), turn.sin()];
+        let direction = direction.map(|x| x / length(direction));
+        let ray = Ray { origin: [0.01 * turn.sin(), 0.1, 0.2], direction };
+        let stream = Stream::of_ray(&ray, 0, Purpose::Path);
+        let mut path = grid.path(&ray, 9.0, stream);
+        while let Some(Tentative { t, rate }) = path.next::<f32>(&grid) {
+            // Beside a wall either cell may be meant.
+            let at = |t: f64| [0, 1, 2].map(|i| f64::from(ray.origin[i]) + t * f64::from(ray.direction[i]));
+            let rates = [t - 1e-9, t, t + 1e-9].map(|t| grid.rate_at(at(t)));
+            assert!(rates.contains(&rate), "{rate} not in {rates:?} at {t}");
+            count += 1;
+        }
+    }
+    assert!(count > 4000, "{count}");
 }
 
 #[test]

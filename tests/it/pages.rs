@@ -18,7 +18,8 @@ pub(crate) fn trials() -> Vec<Trial> {
         Trial::test("pages::every_scene_has_a_picture", every_scene_has_a_picture),
         Trial::test("pages::no_shape_is_missing", no_shape_is_missing),
     ];
-    for (name, text) in PAGES.into_iter().flat_map(scenes) {
+    let named = |page| scenes(page).into_iter().map(move |(name, text)| (format!("{page}_{name}"), text));
+    for (name, text) in PAGES.into_iter().flat_map(named) {
         let scene = text.clone();
         let reference = move || {
             let program = program(&scene)?;

@@ -3,7 +3,7 @@
 //!
 //! The slabs of [`SLABS`] lie across the view, so that all along a ray is a sum over the pieces between their walls.
 
-use crate::support::{Body, Draw, compile, ensure, frame, on_both};
+use crate::support::{Body, Draw, compile, ensure, frame, on_both, render};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::PI;
 use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
@@ -24,6 +24,7 @@ pub(crate) fn trials() -> Vec<Trial> {
     ];
     let mut trials: Vec<Trial> =
         bodies.into_iter().flat_map(|(name, body)| on_both(&format!("media::{name}"), body)).collect();
+    trials.push(Trial::test("media::lights_add_up_on_surfaces", lights_add_up_on_surfaces));
     trials.extend(phases::trials());
     trials
 }
@@ -228,12 +229,24 @@ fn each_medium_has_its_lighting(backend: &Draw<'_>) -> Result<(), Failed> {
     Ok(())
 }
 
-/// The picture under a distant light and a lamp is the sum of the two, where media and a surface shade each other.
+/// The picture under a distant light and a lamp is the sum of the two.
 fn lights_add_up(backend: &Draw<'_>) -> Result<(), Failed> {
-    let shared = "camera { from: (0, 1, 4), at: (0, 0, 0), fov: 45deg }\n\
-        medium fog { region: sphere(1), density: q => 2 + q.local.y, scatter: (0.5, 0.8, 1), phase: schlick(0.4) }\n\
-        medium haze { region: box((2, 0.3, 1)), scatter: 0.4, absorb: (0.3, 0.1, 0), lighting: unshadowed }\n\
-        object floor { shape: plane((0, 1, 0), -0.6), material: phong(0, (0.5, 0.4, 0.3), 0.3, 20) }\n";
+    adds_up(backend, "")
+}
+
+/// The same with soft shadows on a surface. The shader is a large one: on the CPU only.
+fn lights_add_up_on_surfaces() -> Result<(), Failed> {
+    let floor =
+        "object floor { shape: plane((0, 1, 0), -0.6), material: phong(0, (0.5, 0.4, 0.3), 0.3, 20) }\n";
+    adds_up(&|program, frame, job| render(program, frame, job, 2), floor)
+}
+
+fn adds_up(backend: &Draw<'_>, surface: &str) -> Result<(), Failed> {
+    let shared = format!(
+        "camera {{ from: (0, 1, 4), at: (0, 0, 0), fov: 45deg }}\n{surface}\
+         medium fog {{ region: sphere(1), density: q => 2 + q.local.y, scatter: (0.5, 0.8, 1), phase: schlick(0.4) }}\n\
+         medium haze {{ region: box((2, 0.3, 1)), scatter: 0.4, absorb: (0.3, 0.1, 0), lighting: unshadowed }}\n"
+    );
     let sun = "light sun { from: (-0.4, 0.8, 0.3), color: (3, 2.5, 2), spread: 4deg }\n";
     let lamp = "light lamp { at: (0.4, 0.3, 0.5), color: (0.5, 0.7, 1), radius: 0.05 }\n";
     let size = [24, 16];

@@ -126,7 +126,7 @@ fn params_and_time(sandbox: &Sandbox) -> Result<(), Failed> {
 fn step_scale_and_reference(sandbox: &Sandbox) -> Result<(), Failed> {
     let run = |options: &str| {
         let run = format!("render fog.vol -o a.exr --backend cpu --stats s.json {options}");
-        let summary = sandbox.vol(&run)?.expect(0, &[])?.stdout;
+        let summary = sandbox.vol(&run)?.expect(0, &[])?.stderr;
         let stats: serde_json::Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
         let number = |key: &str| stats[key].as_f64();
         Ok::<_, Failed>((summary, number("step"), number("shadow_step"), number("error")))

@@ -3,6 +3,8 @@
 //!
 //! The slabs of [`SLABS`] lie across the view, so that all along a ray is a sum over the pieces between their walls.
 
+mod phases;
+
 use crate::support::{Body, Draw, compile, ensure, frame, on_both, render};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::PI;
@@ -176,11 +178,11 @@ fn overlapping_slabs_keep_their_phases(backend: &Draw<'_>) -> Result<(), Failed>
 fn overlapping_slabs_shade_each_other(backend: &Draw<'_>) -> Result<(), Failed> {
     let scene = format!("{FAR_CAMERA}light l {{ from: (0, 0, 1), color: 5 }}\n{}", slabs("shadowed"));
     let (color, _) = centre(backend, &scene, 0.02)?;
-    for channel in 0..3 {
+    for (channel, &found) in color.iter().enumerate() {
         // The light's own way is as long as the eye's.
         let arriving = |z: f64| 5.0 * (-optical_depth(z, channel)).exp();
         let (radiance, _) = along(-3.0, channel, |z| source(z, channel, -1.0, arriving(z)));
-        near("radiance", color[channel], radiance, 2e-3)?;
+        near("radiance", found, radiance, 2e-3)?;
     }
     Ok(())
 }
@@ -214,7 +216,7 @@ fn each_medium_has_its_lighting(backend: &Draw<'_>) -> Result<(), Failed> {
         .collect();
     let scene = format!("{FAR_CAMERA}light l {{ from: (1, 0, 0), color: 5 }}\n{media}");
     let (color, _) = centre(backend, &scene, 0.02)?;
-    for channel in 0..3 {
+    for (channel, &found) in color.iter().enumerate() {
         let sent = |z: f64| {
             let arriving = [5.0 * (-HALF * extinction(z, channel)).exp(), 0.0, 5.0];
             let here = SLABS.iter().zip(arriving).filter(|(slab, _)| slab.holds(z));
@@ -224,7 +226,7 @@ fn each_medium_has_its_lighting(backend: &Draw<'_>) -> Result<(), Failed> {
             .sum()
         };
         let (radiance, _) = along(-3.0, channel, sent);
-        near("radiance", color[channel], radiance, 2e-3)?;
+        near("radiance", found, radiance, 2e-3)?;
     }
     Ok(())
 }
@@ -310,9 +312,8 @@ fn a_furnace_is_invisible(backend: &Draw<'_>) -> Result<(), Failed> {
         let dimmed = image.pixels.iter().filter(|pixel| pixel.transmittance[1] < 0.5).count();
         ensure(dimmed > 100, || format!("only {dimmed} pixels look through the media"))?;
         for (index, pixel) in image.pixels.iter().enumerate() {
-            for channel in 0..3 {
-                let name = format!("pixel {index} at step {step}");
-                near(&name, f64::from(pixel.color[channel]), background[channel], 3e-5)?;
+            for (&found, expected) in pixel.color.iter().zip(background) {
+                near(&format!("pixel {index} at step {step}"), f64::from(found), expected, 3e-5)?;
             }
         }
     }
@@ -362,104 +363,4 @@ fn light_through_a_lamp_is_finite(backend: &Draw<'_>) -> Result<(), Failed> {
         ensure(image.pixels[40].color[0] > image.pixels[0].color[0], || "the lamp is not seen".into())?;
     }
     Ok(())
-}
-
-/// Phase functions in f32 against formulas in f64.
-mod phases {
-    use super::{PI, henyey_greenstein};
-    use crate::support::{compile, ensure, frame};
-    use libtest_mimic::{Failed, Trial};
-    use vol_compiler::frame::Frame;
-    use vol_compiler::ir::FunctionId;
-    use vol_compiler::program::Program;
-
-    /// Relative error allowed (algorithms.md §7.3).
-    const ALLOWED: f64 = 1e-6;
-
-    /// Values of a function at rows of inputs.
-    type Evaluate = dyn Fn(&Program, &Frame, FunctionId, &[[f32; 2]]) -> Result<Vec<f32>, Failed>;
-
-    pub(super) fn trials() -> Vec<Trial> {
-        vec![
-            Trial::test("media::phases_keep_their_peaks__cpu", || peaks(&on_cpu)),
-            #[cfg(feature = "gpu")]
-            crate::gpu_device::gpu_trial("media::phases_keep_their_peaks", |gpu| {
-                peaks(&|program, frame, id, inputs| {
-                    Ok(vol_runtime_gpu::evaluate(gpu, program, frame, id, inputs.as_flattened())?)
-                })
-            }),
-        ]
-    }
-
-    fn on_cpu(
-        program: &Program,
-        frame: &Frame,
-        id: FunctionId,
-        inputs: &[[f32; 2]],
-    ) -> Result<Vec<f32>, Failed> {
-        let tapes = vol_runtime_cpu::interp::Tapes::new(program);
-        let columns: [Vec<f32>; 2] = std::array::from_fn(|i| inputs.iter().map(|row| row[i]).collect());
-        let mut values = vec![0.0; inputs.len()];
-        vol_runtime_cpu::interp::Evaluator::new(&tapes, frame).evaluate(
-            id,
-            &columns.each_ref().map(Vec::as_slice),
-            &mut [&mut values],
-        );
-        Ok(values)
-    }
-
-    /// By `1 - cos` and `1 + cos`, whichever is small: `1 + g^2 - 2 g cos` loses digits in f64, too.
-    fn lobe(g: f64, versine: f64, coversine: f64) -> f64 {
-        let away = if g < 0.0 { coversine } else { versine };
-        (1.0 - g * g) / (4.0 * PI * ((1.0 - g.abs()).powi(2) + 2.0 * g.abs() * away).powf(1.5))
-    }
-
-    fn schlick(k: f64, versine: f64, coversine: f64) -> f64 {
-        let away = if k < 0.0 { coversine } else { versine };
-        (1.0 - k * k) / (4.0 * PI * (1.0 - k.abs() + k.abs() * away).powi(2))
-    }
-
-    /// Angles from 1e-6 off the peak to right behind it, on both sides.
-    fn inputs() -> Vec<[f32; 2]> {
-        let mut inputs = vec![[0.0, 2.0], [2.0, 0.0], [1.0, 1.0]];
-        for step in 0..400 {
-            let small = 10.0_f64.powf(-12.0 + 12.0 * f64::from(step) / 400.0);
-            let [small, large] = [small as f32, (2.0 - small) as f32];
-            inputs.extend([[small, large], [large, small]]);
-        }
-        inputs
-    }
-
-    fn peaks(evaluate: &Evaluate) -> Result<(), Failed> {
-        let inputs = inputs();
-        ensure((lobe(0.3, 0.8, 1.2) - henyey_greenstein(0.3, 0.2)).abs() < 1e-15, || {
-            "the formula is wrong".into()
-        })?;
-        for size in [0.0, 0.1, 0.5, 0.9, 0.99, 0.999, 0.9999] {
-            for g in [size, -size] {
-                let check = |text: String, expected: &dyn Fn(f64, f64) -> f64| {
-                    let program =
-                        compile("phase.vol", &format!("medium m {{ region: sphere(1), phase: {text} }}"))?;
-                    let frame = frame(&program, 0.0, [4, 4])?;
-                    let found = evaluate(&program, &frame, program.media[0].phase, &inputs)?;
-                    for (&[versine, coversine], &found) in inputs.iter().zip(&found) {
-                        let expected = expected(versine.into(), coversine.into());
-                        let error = (f64::from(found) - expected).abs() / expected;
-                        ensure(error <= ALLOWED, || {
-                            format!(
-                                "{text} at {versine:e}, {coversine:e}: {found} instead of {expected}, {error:e} off"
-                            )
-                        })?;
-                    }
-                    Ok::<(), Failed>(())
-                };
-                check(format!("henyey_greenstein({g})"), &|less, more| lobe(g, less, more))?;
-                check(format!("schlick({g})"), &|less, more| schlick(g, less, more))?;
-                check(format!("double_hg({g}, {}, 0.3)", -0.5 * g), &|less, more| {
-                    0.3 * lobe(g, less, more) + 0.7 * lobe(-0.5 * g, less, more)
-                })?;
-            }
-        }
-        Ok(())
-    }
 }

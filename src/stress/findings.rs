@@ -116,10 +116,10 @@ impl Findings {
     /// The messages, errors first; counts them in the rows.
     pub(super) fn diagnostics(mut self, rows: &mut [Row]) -> Vec<Diagnostic> {
         self.all.sort_by_key(|finding| finding.kind);
-        // What goes to infinity also jumps.
-        let infinite: Vec<Span> =
-            self.all.iter().filter(|f| f.kind == Kind::NotFinite).map(|finding| finding.span).collect();
-        self.all.retain(|finding| finding.kind != Kind::Jumps || !infinite.contains(&finding.span));
+        // What goes to infinity also jumps, and so does what has lost its digits.
+        let causes = |finding: &&Finding| matches!(finding.kind, Kind::NotFinite | Kind::LostDigits);
+        let causes: Vec<Span> = self.all.iter().filter(causes).map(|finding| finding.span).collect();
+        self.all.retain(|finding| finding.kind != Kind::Jumps || !causes.contains(&finding.span));
         for finding in &self.all {
             if let Some(row) = rows.iter_mut().find(|row| row.name == finding.target) {
                 row.findings += 1;

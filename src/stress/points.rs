@@ -76,7 +76,7 @@ impl Place {
             0..3 => {
                 let special = [0.0, self.lo[axis], self.hi[axis], anchor[axis]];
                 p[axis] = special[random.below(4)];
-                if i % 2 == 0 {
+                if i.is_multiple_of(2) {
                     p[(axis + 1) % 3] = anchor[(axis + 1) % 3];
                 }
             }

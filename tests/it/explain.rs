@@ -75,7 +75,7 @@ fn has_mistake(story: &Story) -> Result<(), Failed> {
         (None, None) => return Err("there is no scene with the mistake".into()),
         (Some(_), Some(_)) => return Err("the scene is shown, but another one is tested".into()),
     };
-    let found = messages(code, &before)?;
+    let found = messages(code, "before.vol", &before)?;
     let found: Vec<&str> = found.iter().map(|diagnostic| diagnostic.code).collect();
     ensure(!found.is_empty() && found.iter().all(|found| *found == code || is_flood(code, found)), || {
         format!("the scene before gives {found:?}")
@@ -86,13 +86,13 @@ fn has_mistake(story: &Story) -> Result<(), Failed> {
 fn has_none(story: &Story) -> Result<(), Failed> {
     let after = story.after().ok_or("there is no scene after")?;
     let compiles = diagnose(SourceFile::new("after.vol", after)).program.is_some();
-    let found = messages(story.code, after)?;
+    let found = messages(story.code, "after.vol", after)?;
     ensure(compiles && found.is_empty(), || format!("the scene after gives {found:#?}"))
 }
 
 /// What there is to say about a scene; what `vol stress` says where the code is one of its own.
-fn messages(code: &str, text: &str) -> Result<Vec<Diagnostic>, Failed> {
-    let Diagnosed { program, mut diagnostics, .. } = diagnose(SourceFile::new("scene.vol", text));
+fn messages(code: &str, name: &str, text: &str) -> Result<Vec<Diagnostic>, Failed> {
+    let Diagnosed { program, mut diagnostics, .. } = diagnose(SourceFile::new(name, text));
     if let Some(program) = program.filter(|_| vol::stress::CODES.iter().any(|(own, _)| *own == code)) {
         diagnostics.extend(crate::stress::report(&program)?.diagnostics);
     }

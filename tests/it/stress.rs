@@ -409,8 +409,12 @@ fn found(report: &Report, text: &str, code: &str, underlined: &str) -> Result<()
         let span = d.labels[0].span;
         text.get(span.start as usize..span.end as usize).unwrap_or_default()
     };
+    // Brackets around an expression are a part of it, or not.
+    fn bare(text: &str) -> &str {
+        text.trim_start_matches('(')
+    }
     let right = |d: &Diagnostic| {
-        d.code == code && (underlined.is_empty() || place(d).trim_start_matches('(').starts_with(underlined))
+        d.code == code && (underlined.is_empty() || bare(place(d)).starts_with(bare(underlined)))
     };
     ensure(report.diagnostics.iter().any(right), || {
         format!("{text}\nno {code} at `{underlined}`:\n{}", shown(text, &report.diagnostics))

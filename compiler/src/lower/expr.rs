@@ -176,17 +176,15 @@ impl Lowerer<'_> {
         let mut spine = Vec::new();
         let mut left = id;
         while let ExprKind::Binary(op, a, b) = &hir.expr(left).kind {
-            spine.push((*op, *b));
+            spine.push((*op, *b, hir.expr(left).span));
             left = *a;
         }
         let span = hir.expr(id).span;
-        let start = hir.expr(left).span;
         let mut value = self.expr(left)?;
-        for (op, right) in spine.into_iter().rev() {
-            let end = hir.expr(right).span;
+        for (op, right, place) in spine.into_iter().rev() {
             let right = self.expr(right)?;
             // An operator stands for its own operands, not for all of the chain.
-            let outer = self.enter(start.to(end));
+            let outer = self.enter(place);
             value = self.binary(op, &value, &right, span)?;
             self.graph.set_place(outer);
         }

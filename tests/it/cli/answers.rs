@@ -1,4 +1,4 @@
-//! What `vol check`, `compile`, `query` and `diff` say.
+//! What `vol check`, `compile`, `query`, `diff` and `stress` say.
 
 use super::{Outcome, Sandbox, equal, trial};
 #[cfg(feature = "gpu")]
@@ -21,6 +21,8 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("query::several_components", query_components),
         trial("query::unknown_field_lists_the_fields", query_unknown),
         trial("query::broken_pipe_is_quiet", broken_pipe),
+        trial("stress::fine", stress_fine),
+        trial("stress::faults", stress_faults),
         trial("gpu_by_name_without_a_device", no_device),
     ];
     trials.into_iter().chain(gpu_trials()).collect()
@@ -41,11 +43,36 @@ fn gpu_trials() -> Vec<Trial> {
 
 fn help(sandbox: &Sandbox) -> Result<(), Failed> {
     let help = sandbox.vol("--help")?.expect(0, &[])?.stdout;
-    for command in ["render", "check", "fmt", "params", "explain", "compile", "query", "diff", "Exit codes"] {
+    for command in
+        ["render", "check", "fmt", "params", "explain", "compile", "query", "diff", "stress", "Exit codes"]
+    {
         equal((command, help.contains(command)), (command, true))?;
     }
     let version = sandbox.vol("--version")?.expect(0, &[])?.stdout;
     equal(version, format!("vol {}\n", env!("CARGO_PKG_VERSION")))
+}
+
+/// A table on standard output, nothing wrong, the same twice.
+fn stress_fine(sandbox: &Sandbox) -> Result<(), Failed> {
+    let run = || sandbox.vol("stress ball.vol --points 200 --backend cpu");
+    let outcome = run()?.expect(0, &["moments", "against f64"])?;
+    for function in ["distance:ball", "gradient:ball", "surface:ball", "ramp", "seen"] {
+        equal((function, outcome.stdout.contains(function)), (function, true))?;
+    }
+    equal(run()?.stdout, outcome.stdout)
+}
+
+/// Exit code 1 and the expression underlined; the same as JSON.
+fn stress_faults(sandbox: &Sandbox) -> Result<(), Failed> {
+    sandbox.write("bad.vol", "medium fog { region: sphere(1), density: q => 2 + 1 / q.local.x }\n")?;
+    let words = ["error[E0701]", "bad.vol:1:51", "the inside of the medium `fog`", "`/` of 1 and 0 is inf"];
+    sandbox.vol("stress bad.vol --backend cpu")?.expect(1, &words)?;
+    let outcome = sandbox.vol("stress bad.vol --backend cpu --message-format json")?.expect(1, &[])?;
+    let lines: Vec<serde_json::Value> =
+        outcome.stdout.lines().map(serde_json::from_str).collect::<Result<_, _>>()?;
+    let codes = lines.iter().filter(|line| line["code"] == "E0701").count();
+    let rows = lines.iter().filter(|line| line["function"].is_string()).count();
+    equal((codes, rows), (1, 4))
 }
 
 fn check_fine(sandbox: &Sandbox) -> Result<(), Failed> {

@@ -40,7 +40,7 @@ pub fn moments(program: &Program, params: &[Vec<f64>], time: f64) -> (Vec<Moment
     cases.extend([0.0, LATE].map(|time| (format!("time = {time} s"), params.to_vec(), time)));
     let (mut moments, mut messages): (Vec<Moment>, Vec<Diagnostic>) = (Vec::new(), Vec::new());
     for (label, params, time) in cases {
-        match program.frame(&params, time, (30.0 * time).floor(), SIZE) {
+        match program.frame(&params, time, number(program, &params, time), SIZE) {
             Ok(frame) => {
                 let is_new = |other: &Moment| other.frame.uniforms != frame.uniforms;
                 if moments.iter().all(is_new) {
@@ -57,6 +57,12 @@ pub fn moments(program: &Program, params: &[Vec<f64>], time: f64) -> (Vec<Moment
         }
     }
     (moments, messages)
+}
+
+/// Number of the frame at a time; a time that means the start of a frame may fall just short of it.
+fn number(program: &Program, params: &[Vec<f64>], time: f64) -> f64 {
+    let fps = program.numbers(params, 0.0, 0.0)[program.render.fps.0 as usize];
+    if fps.is_finite() { (time * fps + 1e-6).floor() } else { 0.0 }
 }
 
 /// The ends of the range of a param, or the other truth value.

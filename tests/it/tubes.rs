@@ -3,6 +3,7 @@
 //! Densities come from the CPU as a picture would ask for them; what they should be from the definition of a
 //! tube (lines, searched curves) or from integrals that are known.
 
+use crate::solid::along;
 use crate::support::{Random, compile, compile_with_messages, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::{PI, TAU};
@@ -98,10 +99,16 @@ const LINES: [([f64; 3], [f64; 3], f64); 3] = [
     ([2.0, -1.75, 2.1], [-2.0, 1.25, -2.3], 0.35),
 ];
 
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    along(a, b, -1.0)
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
 /// Distance from a line, if its foot is inside.
 fn from_line(p: [f64; 3], (a, b, _): ([f64; 3], [f64; 3], f64)) -> Option<f64> {
-    let sub = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|i| a[i] - b[i]) };
-    let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let (axis, off) = (sub(b, a), sub(p, a));
     let t = dot(axis, off) / dot(axis, axis);
     let across: [f64; 3] = std::array::from_fn(|i| off[i] - t * axis[i]);
@@ -273,8 +280,7 @@ fn mass_in_own_parameters() -> Result<(), Failed> {
         let text = scene(&format!("{tube}, stretch: true, conserve_mass: true"), density);
         let scene = Compiled::at(&text, 0.5)?;
         let (points, weights) = places(&scene.frame.curves[0]);
-        let (radii, values) = (scene.field("distance:m", &points)?, scene.field("density:m", &points)?);
-        ensure(radii.len() == values.len(), || "as many".to_owned())?;
+        let values = scene.field("density:m", &points)?;
         let found: f64 = values.iter().zip(&weights).map(|(&value, weight)| f64::from(value) * weight).sum();
         let error = found / (PI / 3.0) - 1.0;
         ensure(error.abs() < 1e-3, || format!("{tube}: off by {error}"))?;
@@ -284,27 +290,36 @@ fn mass_in_own_parameters() -> Result<(), Failed> {
 
 /// Points around a curve out to 0.42, which no tube of [`stretched`] exceeds, with volumes.
 fn places(segments: &[Quadratic]) -> (Vec<[f32; 3]>, Vec<f64>) {
-    let vector = |a: [f64; 3]| glam::DVec3::from(a);
-    let (along, around, outwards, most) = (480 / segments.len(), 24, 40, 0.42);
+    let (count, around, outwards, most) = (480 / segments.len(), 24, 40, 0.42);
     let (mut points, mut weights) = (Vec::new(), Vec::new());
     for segment in segments {
-        let (b1, b2) = (vector(segment.b) - vector(segment.a), vector(segment.c) - vector(segment.b));
-        for i in 0..along {
-            let u = (i as f64 + 0.5) / along as f64;
-            let (velocity, change) = (2.0 * b1.lerp(b2, u), 2.0 * (b2 - b1));
-            let at = vector(segment.a)
-                .lerp(vector(segment.b), u)
-                .lerp(vector(segment.b).lerp(vector(segment.c), u), u);
-            let speed = velocity.length();
-            let curvature = change.reject_from(velocity) / (speed * speed);
-            let (x, y) = velocity.normalize().any_orthonormal_pair();
+        for i in 0..count {
+            let u = (i as f64 + 0.5) / count as f64;
+            let (b1, b2) = (sub(segment.b, segment.a), sub(segment.c, segment.b));
+            let velocity: [f64; 3] = std::array::from_fn(|k| 2.0 * (b1[k] + u * (b2[k] - b1[k])));
+            let change: [f64; 3] = std::array::from_fn(|k| 2.0 * (b2[k] - b1[k]));
+            let at: [f64; 3] =
+                std::array::from_fn(|k| segment.a[k] + u * (2.0 * b1[k] + u * (b2[k] - b1[k])));
+            let speed = dot(velocity, velocity).sqrt();
+            let tangent = velocity.map(|x| x / speed);
+            let curvature = along(change, tangent, -dot(change, tangent)).map(|x| x / (speed * speed));
+            // Two directions across.
+            let axis = if tangent[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+            let x = along(axis, tangent, -dot(axis, tangent));
+            let x = x.map(|c| c / dot(x, x).sqrt());
+            let y = [
+                tangent[1] * x[2] - tangent[2] * x[1],
+                tangent[2] * x[0] - tangent[0] * x[2],
+                tangent[0] * x[1] - tangent[1] * x[0],
+            ];
             for k in 0..around * outwards {
                 let angle = TAU * ((k % around) as f64 + 0.5) / around as f64;
                 let out = most * ((k / around) as f64 + 0.5) / outwards as f64;
-                let offset = out * (angle.cos() * x + angle.sin() * y);
+                let offset: [f64; 3] =
+                    std::array::from_fn(|i| out * (angle.cos() * x[i] + angle.sin() * y[i]));
                 let area = out * (most / outwards as f64) * (TAU / around as f64);
-                points.push((at + offset).as_vec3().to_array());
-                weights.push(area * speed / along as f64 * (1.0 - curvature.dot(offset)).max(0.0));
+                points.push(along(at, offset, 1.0).map(|c| c as f32));
+                weights.push(area * speed / count as f64 * (1.0 - dot(curvature, offset)).max(0.0));
             }
         }
     }
@@ -314,7 +329,7 @@ fn places(segments: &[Quadratic]) -> (Vec<[f32; 3]>, Vec<f64>) {
 /// A path of 10 000 quadratics through a box, with its text.
 fn long_path(segments: usize) -> String {
     format!(
-        "let n = {segments}\nfn at(i: float) -> vec3 {{ vec3(2 * cos(0.061 * i), 3 * i / {segments} - 1.5, sin(0.083 * i)) }}\n\
+        "fn at(i: float) -> vec3 {{ vec3(2 * cos(0.061 * i), 3 * i / {segments} - 1.5, sin(0.083 * i)) }}\n\
          medium m {{ region: tube(path([for i in 0..{segments}: bezier(0.5 * (at(i) + at(i + 1)), at(i + 1), \
          0.5 * (at(i + 1) + at(i + 2)))]), radius: 0.05) }}"
     )

@@ -47,12 +47,12 @@ pub struct ReferencePoint {
 ///   a bend sharper than 1e-8 of its segment is a cusp; a curve that is a point has tangent +z
 pub fn closest(p: Vector, segments: &[Quadratic]) -> Option<ReferencePoint> {
     let arms = arms_of(segments);
-    let Some(last) = arms.last() else {
+    if arms.is_empty() {
         return segments.first().map(|s| at_point(p, s.a));
-    };
+    }
     let Nearest { index, u, distance, gap } = nearest(p, &arms);
     let found = described(p, &arms, index, u);
-    Some(ReferencePoint { curve_length: last.offset + last.length_to(1.0), distance, gap, ..found })
+    Some(ReferencePoint { curve_length: length_of(&arms), distance, gap, ..found })
 }
 
 /// A point seen from the place `u` of an arm; length of the curve and gap are not known here.
@@ -65,7 +65,7 @@ fn described(p: Vector, arms: &[Arm], index: usize, u: f64) -> ReferencePoint {
     let last_end = if index + 1 == arms.len() && u == 1.0 { dot(offset, tangent) } else { 0.0 };
     ReferencePoint {
         t: arm.t(u),
-        arc_length: arm.offset + arm.length_to(u),
+        arc_length: length_of(&arms[..index]) + arm.length_to(u),
         curve_length: 0.0,
         x: dot(offset, normal),
         y: dot(offset, cross(tangent, normal)),
@@ -146,6 +146,11 @@ fn nearest(p: Vector, arms: &[Arm]) -> Nearest {
     Nearest { index, u, distance, gap }
 }
 
+/// Length of arms together.
+fn length_of(arms: &[Arm]) -> f64 {
+    arms.iter().map(|arm| arm.length_to(1.0)).sum()
+}
+
 /// A curve that is one point, tangent +z.
 fn at_point(p: Vector, a: Vector) -> ReferencePoint {
     let tangent = [0.0, 0.0, 1.0];
@@ -171,7 +176,6 @@ struct Arm {
     b2: Vector,
     t_first: f64,
     t_share: f64,
-    offset: f64,
     first_normal: Vector,
     /// Parameter of the smallest speed, if inside.
     vertex: f64,
@@ -194,7 +198,6 @@ fn arms_of(segments: &[Quadratic]) -> Vec<Arm> {
             b2,
             t_first: i as f64 / segments.len() as f64,
             t_share: 1.0 / segments.len() as f64,
-            offset: arms.last().map_or(0.0, |before| before.offset + before.length_to(1.0)),
             first_normal: [0.0; 3],
             vertex,
             cusp: (-1e-8..=1.0 + 1e-8).contains(&vertex) && norm(cross(b1, b2)) <= 1e-8 * dot(b2, b2),

@@ -42,9 +42,9 @@ pub fn next_foot(p: Vector, segments: &[Quadratic], from: u32, most: f64, closed
         for (kind, place) in (0u32..).zip(feet_of(p, &arms, &parts, index, closed)) {
             let number = 3 * index as u32 + kind;
             let Some(u) = place.filter(|_| number >= from) else { continue };
-            let point = described(p, &arms, parts[index].arm, u);
-            if point.distance <= most {
-                return ReferenceFoot { next: number + 1, point: Some(point) };
+            let arm = parts[index].arm;
+            if norm(sub(p, arms[arm].point(u))) <= most {
+                return ReferenceFoot { next: number + 1, point: Some(described(p, &arms, arm, u)) };
             }
         }
     }

@@ -120,7 +120,8 @@ fn compare(p: [f32; 3], segments: &[Quadratic], worst: &mut Worst) {
     let scale = span.max(truth.distance).max(1e-30);
     let error = |a: f32, b: f64, sink: &mut f64| *sink = sink.max((f64::from(a) - b).abs() / scale);
     error(found.distance, truth.distance, &mut worst.distance);
-    error(found.curve_length, truth.curve_length, &mut worst.distance);
+    let length = (f64::from(found.curve_length) - truth.curve_length).abs() / truth.curve_length.max(scale);
+    worst.arc = worst.arc.max(length);
     if truth.gap < 1e-4 * scale || truth.stretch < 0.05 {
         return;
     }

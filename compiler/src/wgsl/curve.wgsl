@@ -71,6 +71,19 @@ fn vol_reach(w: vec3f, b1: vec3f, b2: vec3f, t: f32) -> vec3f {
     return w + (t * ((2.0 * b1) + (t * b2)));
 }
 
+// The end of a piece at t = 1 seen from `p`.
+fn vol_end_from_point(p: vec3f, word: u32) -> vec3f {
+    return (vol_curve_vector(word + 40u) - p) + vol_curve_vector(word + 43u);
+}
+
+// `Q(t) - p` from the nearer end of the piece, which halves what rounding takes.
+fn vol_offset_at(p: vec3f, word: u32, b1: vec3f, b2: vec3f, t: f32) -> vec3f {
+    let start = vol_reach(vol_from_point(p, word), b1, b2, t);
+    let back = 1.0 - t;
+    let before = vol_end_from_point(p, word) - (back * ((2.0 * (b1 + b2)) - (back * b2)));
+    return select(start, before, t > 0.5);
+}
+
 // Start for the cube root of `x >= 0`, a few per cent off.
 fn vol_rough_cube_root(x: f32) -> f32 {
     return bitcast<f32>((bitcast<u32>(x) / 3u) + 709921077u);
@@ -217,8 +230,7 @@ fn vol_describe(p: vec3f, word: u32, t: f32) -> VolCurvePoint {
     let sense = vol_curves[word + 32u];
     let curve_length = vol_curves[word + 39u];
     // Offset and half velocity at the foot.
-    let w = vol_from_point(p, word);
-    let r = vol_reach(w, b1, b2, t);
+    let r = vol_offset_at(p, word, b1, b2, t);
     let v = b1 + (t * b2);
     let vv = max(vol_dot(v, v), VOL_TINY);
     // Unit tangent along the curve.

@@ -20,7 +20,7 @@ struct VolNextFoot {
 fn vol_feet_of(p: vec3f, word: u32, closed: bool) -> vec3f {
     // How the distance grows along the curve at both ends of the piece.
     let w = vol_from_point(p, word);
-    let w_end = (vol_curve_vector(word + 40u) - p) + vol_curve_vector(word + 43u);
+    let w_end = vol_end_from_point(p, word);
     let at_start = vol_dot(w, vol_curve_vector(word + 12u));
     let at_end = vol_dot(w_end, vol_curve_vector(word + 46u));
     let sense = vol_curves[word + 32u];

@@ -120,6 +120,33 @@ fn reach(w: [f32; 3], piece: &Piece, t: f32) -> [f32; 3] {
     ]
 }
 
+/// The end of a piece at t = 1 seen from `p`.
+#[inline(always)]
+fn end_from_point(p: [f32; 3], piece: &Piece) -> [f32; 3] {
+    [
+        (piece.end[0] - p[0]) + piece.end_low[0],
+        (piece.end[1] - p[1]) + piece.end_low[1],
+        (piece.end[2] - p[2]) + piece.end_low[2],
+    ]
+}
+
+/// `Q(t) - p` from the nearer end of the piece, which halves what rounding takes.
+#[inline(always)]
+fn offset_at(p: [f32; 3], piece: &Piece, t: f32) -> [f32; 3] {
+    let (start, end) = (reach(from_point(p, piece), piece, t), end_from_point(p, piece));
+    let back = 1.0 - t;
+    let before = |axis: usize| {
+        let twice = 2.0 * (piece.b1[axis] + piece.b2[axis]);
+        end[axis] - (back * (twice - (back * piece.b2[axis])))
+    };
+    let past = t > 0.5;
+    [
+        if past { before(0) } else { start[0] },
+        if past { before(1) } else { start[1] },
+        if past { before(2) } else { start[2] },
+    ]
+}
+
 /// Start for the cube root of `x >= 0`, a few per cent off.
 #[inline(always)]
 fn rough_cube_root(x: f32) -> f32 {
@@ -298,8 +325,7 @@ fn length_to(piece: &Piece, t: f32) -> f32 {
 #[inline(always)]
 pub fn describe(p: [f32; 3], piece: &Piece, t: f32) -> CurvePoint {
     // Offset and half velocity at the foot.
-    let w = from_point(p, piece);
-    let r = reach(w, piece, t);
+    let r = offset_at(p, piece, t);
     let v =
         [piece.b1[0] + (t * piece.b2[0]), piece.b1[1] + (t * piece.b2[1]), piece.b1[2] + (t * piece.b2[2])];
     let vv = greater(dot(v, v), TINY);

@@ -12,7 +12,7 @@
 //!
 //! Twin: `compiler/src/wgsl/feet.wgsl`.
 
-use super::{CurvePoint, NOWHERE, describe, dot, from_point, held_point, inner, nodes};
+use super::{CurvePoint, NOWHERE, describe, dot, end_from_point, from_point, held_point, inner, nodes};
 use vol_compiler::curve::{Node, Piece};
 
 /// Feet that a piece may have.
@@ -25,16 +25,6 @@ pub struct NextFoot {
     pub next: f32,
     /// The point seen from it; without, 1e18 units away with everything else 0, stretch 1.
     pub point: CurvePoint,
-}
-
-/// The end of a piece at t = 1 seen from `p`.
-#[inline(always)]
-fn end_from_point(p: [f32; 3], piece: &Piece) -> [f32; 3] {
-    [
-        (piece.end[0] - p[0]) + piece.end_low[0],
-        (piece.end[1] - p[1]) + piece.end_low[1],
-        (piece.end[2] - p[2]) + piece.end_low[2],
-    ]
 }
 
 /// Where a piece has feet: parameters in the order of the curve, -1 for none.

@@ -1,80 +1,212 @@
-//! experiments
-use crate::support::{compile, compile_file, frame};
+//! `--max-error E` is true: the error of the picture, over all pixels and channels, relative to their root mean
+//! square, is at most E, and so is the estimate.
+//!
+//! The reference is a picture with steps that are much finer than any chosen ones, by the corrected
+//! quadrature; that by the midpoint rule must agree with it. All are f32: how little f32 differs from f64 with
+//! the same samples is tested apart. Along the outline of a solid the last bit decides which surface a pixel
+//! sees; such pixels are counted, not compared.
+//!
+//! `VOL_MAX_ERROR=1e-4` goes on to smaller errors than 1e-3 where those take minutes.
+
+use crate::support::{compile, compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
-use std::sync::atomic::AtomicBool;
-use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
+/// Small, since references are slow.
+const SIZE: [u32; 2] = [24, 18];
+
+/// Moment of the examples: nothing is at rest.
+const TIME: f64 = 0.4;
+
+/// A scene, the step of its reference, and the least error that is quick to test.
+struct Case {
+    name: &'static str,
+    text: &'static str,
+    fine: f32,
+    least: f32,
+}
+
+/// Scenes that are hard in different ways.
+const CASES: [Case; 9] = [
+    Case {
+        name: "small_cloud_in_a_corner",
+        text: "medium m { region: sphere(0.16).translate((1.4, 1, 0)),\n\
+               density: q => 60 * max(0, perlin(9 * q.local) + 0.2), absorb: 0.2 }\n\
+               light l { from: (1, 1, 1), color: 6 }\n\
+               camera { from: (0, 0, 5), at: (0, 0, 0), fov: 40deg }\n\
+               render { size: (24, 18), background: 0.02 }",
+        fine: 1e-3,
+        least: 1e-4,
+    },
+    Case {
+        name: "hard_walls",
+        text: "medium m { region: box((0.7, 0.5, 0.6)).rotate_y(25deg), density: q => 2 + q.world.x, absorb: 0.3 }\n\
+               light l { from: (1, 2, 1), color: 6 }\n\
+               camera { from: (0.4, 0.8, 4), at: (0, 0, 0), fov: 30deg }",
+        fine: 2e-3,
+        least: 1e-4,
+    },
+    Case {
+        name: "thin_sheet",
+        text: "medium m { region: box((0.8, 0.02, 0.8)).rotate_x(30deg), density: 20 }\n\
+               light l { from: (0.3, 1, 1), color: 8 }\n\
+               camera { from: (0, 1, 4), at: (0, 0, 0), fov: 30deg }",
+        fine: 1e-3,
+        least: 1e-3,
+    },
+    Case {
+        name: "dense_and_white",
+        text: "medium m { region: sphere(0.9), density: 1000, scatter: 0.99, absorb: 0.01 }\n\
+               light l { from: (1, 1, 2), color: 8 }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
+        fine: 2e-5,
+        least: 1e-2,
+    },
+    Case {
+        name: "overlapping_media",
+        text: "medium a { region: sphere(0.8).translate((-0.3, 0, 0)), density: q => 6 * falloff(0.2, 1, q.radius), scatter: (0.9, 0.5, 0.2), absorb: 0.1 }\n\
+               medium b { region: sphere(0.7).translate((0.4, 0.1, 0)), density: q => 8 * max(0, perlin(4 * q.world)), scatter: (0.2, 0.5, 0.9), emit: (0.1, 0, 0.2) }\n\
+               light l { from: (0, 1, 1), color: 8 }\n\
+               light k { from: (-1, 0, 0.2), color: (2, 3, 4) }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
+        fine: 2e-3,
+        least: 1e-4,
+    },
+    Case {
+        name: "solids_in_a_medium",
+        text: "object ball { shape: sphere(0.4), material: diffuse(0.8) }\n\
+               medium m { region: box((1, 0.8, 1)), density: q => 1 + 0.8 * sin(5 * q.world.x), absorb: 0.2 }\n\
+               light l { from: (1, 1, 0.5), color: 5 }\n\
+               camera { from: (0, 0.5, 4), at: (0, 0, 0), fov: 34deg }",
+        fine: 2e-3,
+        least: 1e-4,
+    },
+    Case {
+        name: "lamp_inside",
+        text: "medium m { region: sphere(1), density: q => 1.5 * falloff(0.5, 1, q.radius) }\n\
+               light l { at: (0.1, 0.2, 0.1), color: 3 }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 34deg }",
+        fine: 1e-3,
+        least: 1e-3,
+    },
+    Case {
+        name: "emission_only",
+        text: "medium m { region: sphere(1), density: q => 3 * max(0, perlin(3 * q.local) + 0.1), scatter: 0, emit: (1, 0.5, 0.2) }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 34deg }",
+        fine: 1e-3,
+        least: 1e-4,
+    },
+    Case {
+        name: "eye_inside",
+        text: "medium m { region: sphere(2), density: q => 2 * max(0, perlin(2 * q.local) + 0.3), absorb: 0.1 }\n\
+               light l { from: (1, 1, 1), color: 5 }\n\
+               camera { from: (0.2, 0.1, 0.3), at: (-1, 0.3, -1), fov: 60deg }",
+        fine: 4e-3,
+        least: 1e-4,
+    },
+];
+
+/// Step of the reference and least quick error of the examples with media.
+const EXAMPLES: [(&str, f32, f32); 4] = [
+    ("cloud_ball", 4e-3, 1e-3),
+    ("clouds_paper", 4e-3, 1e-3),
+    ("port_media", 4e-3, 1e-3),
+    ("tornado", 1e-3, 1e-2),
+];
+
+/// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
-    vec![Trial::test("accuracy::table", table)]
-}
-
-fn colors(program: &Program, frame: &Frame, job: &Job) -> (Vec<f64>, u64) {
-    let (image, stats) =
-        vol_runtime_cpu::render(program, frame, job, None, &|_| {}, &AtomicBool::new(false)).unwrap();
-    (
-        image.pixels.iter().flat_map(|p| p.color).map(f64::from).collect(),
-        stats.medium_samples + stats.shadow_samples,
-    )
-}
-
-fn error(a: &[f64], b: &[f64]) -> f64 {
-    let d: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
-    let w: f64 = b.iter().map(|b| b * b).sum();
-    (d / w).sqrt()
-}
-
-fn table() -> Result<(), Failed> {
-    let size = [48, 36];
-    let list = std::env::var("SCENES").unwrap_or_default();
-    let fine: f32 = std::env::var("FINE").ok().and_then(|v| v.parse().ok()).unwrap_or(0.004);
-    for path in list.split_whitespace() {
-        let program = compile_file(std::path::Path::new(path))?;
-        let frame = frame(&program, 0.0, size)?;
-        let job = |step: f32, ratio: f32, quadrature| Job {
-            size,
-            step,
-            shadow_step: ratio * step,
-            quadrature,
-            sampling: Sampling::CENTRE,
-        };
-        let started = std::time::Instant::now();
-        let (reference, _) = colors(&program, &frame, &job(fine, 1.0, Quadrature::Corrected));
-        println!("{path}: reference in {:?}", started.elapsed());
-        for max_error in [1e-2, 1e-3, 1e-4] {
-            let started = std::time::Instant::now();
-            let choice = vol_runtime_cpu::choose_step(&program, &frame, size, max_error);
-            let pilot = started.elapsed();
-            let started = std::time::Instant::now();
-            let (picture, cost) = colors(&program, &frame, &choice.job(size, Sampling::CENTRE));
-            println!(
-                "  {max_error:.0e}: {choice:?} pilot {pilot:?} render {:?} cost {cost} ERROR {:.2e}",
-                started.elapsed(),
-                error(&picture, &reference)
-            );
-        }
-        if std::env::var_os("LADDER").is_none() {
-            continue;
-        }
-        for (quadrature, ratio) in [
-            (Quadrature::Midpoint, 1.0),
-            (Quadrature::Midpoint, 2.0),
-            (Quadrature::Corrected, 1.0),
-            (Quadrature::Corrected, 2.0),
-        ] {
-            let mut step = 0.128;
-            while step > 2.5 * fine {
-                let started = std::time::Instant::now();
-                let (picture, cost) = colors(&program, &frame, &job(step, ratio, quadrature));
-                println!(
-                    "  {quadrature:?} ratio {ratio} step {step:.4} cost {cost:9} time {:?} error {:.2e}",
-                    started.elapsed(),
-                    error(&picture, &reference)
-                );
-                step *= 0.5;
+    let mut trials = Vec::new();
+    for Case { name, text, fine, least } in CASES {
+        trials.push(Trial::test(format!("accuracy::{name}"), move || {
+            keeps_its_promise(&compile(name, text)?, fine, least)
+        }));
+    }
+    for (name, path) in examples() {
+        let known = EXAMPLES.iter().find(|example| example.0 == name).copied();
+        trials.push(Trial::test(format!("accuracy::{name}"), move || {
+            let program = compile_file(&path)?;
+            rounds_well(&program)?;
+            match known {
+                Some((_, fine, least)) => keeps_its_promise(&program, fine, least),
+                None => ensure(program.media.is_empty(), || "give this example a reference step".into()),
             }
+        }));
+    }
+    trials
+}
+
+/// A picture chosen for each error is as good as that.
+fn keeps_its_promise(program: &Program, fine: f32, least: f32) -> Result<(), Failed> {
+    let frame = frame(program, TIME, SIZE)?;
+    let asked = std::env::var("VOL_MAX_ERROR").ok().and_then(|text| text.parse().ok());
+    let least = asked.unwrap_or(least).min(least);
+    let sampling = Sampling::CENTRE;
+    let job = |quadrature| Job { size: SIZE, step: fine, shadow_step: fine, quadrature, sampling };
+    let reference = render(program, &frame, &job(Quadrature::Corrected), 2)?;
+    let witness = render(program, &frame, &job(Quadrature::Midpoint), 2)?;
+    let apart = error(&witness, &reference);
+    ensure(apart <= 0.5 * f64::from(least), || format!("the reference is only good to {apart:.1e}"))?;
+    for max_error in [1e-2, 1e-3, 1e-4].into_iter().filter(|&error| error >= least) {
+        let choice = vol_runtime_cpu::choose_step(program, &frame, SIZE, max_error);
+        let mut picture = render(program, &frame, &choice.job(SIZE, sampling), 2)?;
+        let found = error(&picture, &reference);
+        println!("{max_error:.0e} error {found:.1e}, witness {apart:.1e}, {choice:?}");
+        ensure(found <= f64::from(max_error), || {
+            format!("{found:.1e} instead of {max_error:.0e}: {choice:?}")
+        })?;
+        ensure(choice.estimate <= max_error, || format!("{max_error:.0e} not met: {choice:?}"))?;
+        // The rms of the pixels' errors is the estimate.
+        picture.scale_errors(choice.estimate);
+        let estimate = f64::from(choice.estimate);
+        let off = (rms_of_errors(&picture) - estimate).abs();
+        ensure(off <= 1e-3 * estimate, || format!("errors of pixels are off by {off:.1e}"))?;
+    }
+    Ok(())
+}
+
+/// Root mean square of the difference over that of the second.
+fn error(a: &Image, b: &Image) -> f64 {
+    let squares = |a: &Image, b: Option<&Image>| -> f64 {
+        let pixels = a.pixels.iter().enumerate().flat_map(|(i, pixel)| {
+            (0..3)
+                .map(move |c| f64::from(pixel.color[c]) - b.map_or(0.0, |b| f64::from(b.pixels[i].color[c])))
+        });
+        pixels.map(|x| x * x).sum()
+    };
+    (squares(a, Some(b)) / squares(b, None)).sqrt()
+}
+
+/// Root mean square of the pixels' errors over that of the colours.
+fn rms_of_errors(image: &Image) -> f64 {
+    let errors: f64 = image.pixels.iter().map(|pixel| f64::from(pixel.error).powi(2)).sum();
+    let colors = image.pixels.iter().flat_map(|pixel| pixel.color).map(|c| f64::from(c).powi(2));
+    (3.0 * errors / colors.sum::<f64>()).sqrt()
+}
+
+/// f32 and f64 give the same picture but for 2e-5, where the same surfaces are seen.
+fn rounds_well(program: &Program) -> Result<(), Failed> {
+    let frame: Frame = frame(program, TIME, SIZE)?;
+    let job = Job {
+        size: SIZE,
+        step: 0.05,
+        shadow_step: 0.1,
+        quadrature: Quadrature::Corrected,
+        sampling: Sampling::CENTRE,
+    };
+    let mut actual = render(program, &frame, &job, 2)?;
+    let mut expected = vol::compare::reference_picture(program, &frame, &job);
+    let mut flipped = 0;
+    for (a, b) in actual.pixels.iter_mut().zip(&mut expected.pixels) {
+        let near = (a.depth - b.depth).abs() <= 1e-3 * b.depth;
+        if !(near || a.depth == b.depth) {
+            flipped += 1;
+            (a.color, b.color) = ([0.0; 3], [0.0; 3]);
         }
     }
-    let _ = compile;
-    Ok(())
+    let found = error(&actual, &expected);
+    println!("rounding {found:.1e}, {flipped} pixels see another surface");
+    ensure(flipped <= 2, || format!("{flipped} pixels see another surface"))?;
+    ensure(found < 2e-5, || format!("f32 is off by {found:.1e}"))
 }

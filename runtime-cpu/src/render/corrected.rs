@@ -1,9 +1,12 @@
 //! What media along a ray add and take away, by [`super::panel`].
 //!
-//! In a panel the source (light sent per unit of density) changes linearly with the optical depth `x`, from
-//! `s0` to `s1`: `L += T mass (s0 phi + (s1 - s0) psi)`, `phi = (1 - exp(-x)) / x`, `psi = (phi - exp(-x)) / x`
-//! (algorithms.md §5.1), of all media with the same `x`. Nothing is divided by the extinction: a gas that
-//! only glows is nothing special.
+//! In a thick panel the source (light sent per unit of density) changes linearly with the optical depth `x`,
+//! from `s0` to `s1`: `L += T mass (s0 phi + (s1 - s0) psi)`, `phi = (1 - exp(-x)) / x`,
+//! `psi = (phi - exp(-x)) / x` (algorithms.md §5.1), of all media with the same `x`. That is right for any `x`, but
+//! of second order: its errors have one sign. In a thin panel it is the trapezoid of the whole integrand,
+//! `L += T (m0 s0 + m1 s1 exp(-x))`, whose errors cancel along a ray (Euler and Maclaurin: only ends and kinks
+//! count, and those are in the masses). Between [`THIN`] and [`THICK`] one goes over into the other. Nothing is
+//! divided by the extinction: a gas that only glows is nothing special.
 //!
 //! Twin: `compiler/src/wgsl/render/corrected.wgsl`.
 
@@ -14,7 +17,13 @@ use super::medium::{Chunk, Glow};
 use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
-use crate::real::{Real, add, mul, scale, sub};
+use crate::real::{Real, Vec3, add, mul, scale, sub};
+
+/// Up to this optical depth a panel is thin.
+const THIN: f32 = 0.125;
+
+/// From this optical depth a panel is thick.
+const THICK: f32 = 0.5;
 
 /// Places of the colours among the outputs of [`vol_compiler::program::Medium::interior`].
 const SCATTERING: usize = 1;
@@ -54,16 +63,23 @@ impl<F: Fields> Integrator<'_, F> {
         // Add up what they send.
         for (filling, list) in fillings.iter().zip(lists) {
             for panel in list {
-                let depth = chunk.depth[panel.slot];
-                let [from, to] = panel.ends.map(|end| filling.source[end]);
-                let steady = mul(from, depth.map(Real::mean_decay));
-                let change = mul(sub(to, from), depth.map(Real::decay_moment));
-                let sent = scale(add(steady, change), panel.masses[0] + panel.masses[1]);
+                let sources = panel.ends.map(|end| filling.source[end]);
+                let sent = sent(panel.masses, sources, chunk.depth[panel.slot]);
                 chunk.sent[panel.slot] = add(chunk.sent[panel.slot], sent);
             }
         }
         chunk
     }
+}
+
+/// Light that a panel sends towards the eye, in front of it.
+fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>) -> Vec3<R> {
+    let steady = mul(from, depth.map(Real::mean_decay));
+    let change = mul(sub(to, from), depth.map(Real::decay_moment));
+    let thick = scale(add(steady, change), masses[0] + masses[1]);
+    let thin = add(scale(from, masses[0]), scale(mul(to, depth.map(Real::decay)), masses[1]));
+    let rise = |x: R| ((x - R::from_f32(THIN)) * R::from_f32(1.0 / (THICK - THIN))).max(R::ZERO).min(R::ONE);
+    add(thin, mul(sub(thick, thin), depth.map(rise)))
 }
 
 /// A medium at the ends of its panels, and those of them whose light arrives. Ends of others stay dark.

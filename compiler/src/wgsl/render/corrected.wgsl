@@ -5,6 +5,8 @@
 const BEFORE: u32 = 0u;
 const AFTER: u32 = 1u;
 const WALL: u32 = 2u;
+const THIN: f32 = 0.125;
+const THICK: f32 = 0.5;
 const END_SLOTS: u32 = 3u * MEDIUM_SLOTS;
 
 // The panels between two nodes.
@@ -128,6 +130,16 @@ fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
     return lit_after;
 }
 
+// Light that a panel sends towards the eye, in front of it.
+fn panel_sent(masses: vec2f, start: vec3f, end: vec3f, depth: vec3f) -> vec3f {
+    let steady = start * mean_decay3(depth);
+    let change = (end - start) * decay_moment3(depth);
+    let thick = (steady + change) * (masses.x + masses.y);
+    let thin = (start * masses.x) + ((end * decay3(depth)) * masses.y);
+    let rise = min(max((depth - vec3f(THIN)) * (1.0f / (THICK - THIN)), vec3f(0.0)), vec3f(1.0));
+    return thin + ((thick - thin) * rise);
+}
+
 // Adds up what the panels send.
 fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
     let depth = (*panels).depth;
@@ -137,9 +149,8 @@ fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
         if (any(masses > vec2f(0.0))) {
             let ends = (*panels).ends[medium];
             let start = (*panels).sources[(ends.x * MEDIUM_SLOTS) + medium];
-            let change = (*panels).sources[(ends.y * MEDIUM_SLOTS) + medium] - start;
-            let steady = start * mean_decay3(depth);
-            sent += (steady + (change * decay_moment3(depth))) * (masses.x + masses.y);
+            let end = (*panels).sources[(ends.y * MEDIUM_SLOTS) + medium];
+            sent += panel_sent(masses, start, end, depth);
         }
     }
     return sent;

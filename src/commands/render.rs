@@ -92,6 +92,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         tube_bounds: method::tube_bounds(arguments),
         max_error: method::max_error(arguments),
         step_scale: arguments.step_scale,
+        quadrature: None,
         step: None,
         shadow_step: None,
         estimate: None,
@@ -189,7 +190,7 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         && estimate > max_error
     {
         let text = format!("the estimated error {estimate:.1e} is above the {max_error:.1e} asked for");
-        let help = "the steps are as small as they get; look at the picture, or allow more with --max-error";
+        let help = "finding smaller steps would take too many samples; look at the picture, or allow more with --max-error";
         super::print_message("warning", &Message { text, help: Some(help.to_owned()) });
     }
     let [width, height] = stats.size;

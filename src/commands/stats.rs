@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
-use vol_compiler::frame::Counts;
-use vol_runtime_cpu::GridChoice;
+use vol_compiler::frame::{Counts, Quadrature};
+use vol_runtime_cpu::{GridChoice, Method};
 
 use super::method::Plan;
 
@@ -34,6 +34,8 @@ pub(super) struct Stats {
     pub(super) max_error: Option<f32>,
     /// What the chosen steps of the comb were multiplied by.
     pub(super) step_scale: Option<f32>,
+    /// How samples of the comb become an integral, `midpoint` or `corrected`; of the last frame.
+    pub(super) quadrature: Option<&'static str>,
     /// Distance between samples of media along camera rays; the smallest of all frames. Random paths have none.
     pub(super) step: Option<f32>,
     /// The same along shadow rays.
@@ -66,6 +68,10 @@ impl Stats {
             self.step = smaller(self.step, plan.job.step);
             self.shadow_step = smaller(self.shadow_step, plan.job.shadow_step);
         }
+        self.quadrature = (plan.method == Method::Comb).then_some(match plan.job.quadrature {
+            Quadrature::Midpoint => "midpoint",
+            Quadrature::Corrected => "corrected",
+        });
         self.estimate = self.estimate.into_iter().chain(estimate).reduce(f32::max);
         self.light_grids = plan.grids.iter().map(LightGrid::new).collect();
         self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);

@@ -6,7 +6,8 @@
 //! the same samples is tested apart. Along the outline of a solid the last bit decides which surface a pixel
 //! sees; such pixels are counted, not compared.
 //!
-//! `VOL_MAX_ERROR=1e-4` goes on to smaller errors than 1e-3 where those take minutes.
+//! Smaller errors than those here take minutes. Short ways through a corner of a region are missed by both
+//! quadratures while they are shorter than a step, which makes hard walls the slowest case.
 
 use crate::support::{compile, compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
@@ -36,16 +37,16 @@ const CASES: [Case; 9] = [
                light l { from: (1, 1, 1), color: 6 }\n\
                camera { from: (0, 0, 5), at: (0, 0, 0), fov: 40deg }\n\
                render { size: (24, 18), background: 0.02 }",
-        fine: 1e-3,
-        least: 1e-4,
+        fine: 4e-4,
+        least: 1e-3,
     },
     Case {
         name: "hard_walls",
         text: "medium m { region: box((0.7, 0.5, 0.6)).rotate_y(25deg), density: q => 2 + q.world.x, absorb: 0.3 }\n\
                light l { from: (1, 2, 1), color: 6 }\n\
                camera { from: (0.4, 0.8, 4), at: (0, 0, 0), fov: 30deg }",
-        fine: 2e-3,
-        least: 1e-4,
+        fine: 1e-3,
+        least: 1e-2,
     },
     Case {
         name: "thin_sheet",
@@ -60,7 +61,7 @@ const CASES: [Case; 9] = [
         text: "medium m { region: sphere(0.9), density: 1000, scatter: 0.99, absorb: 0.01 }\n\
                light l { from: (1, 1, 2), color: 8 }\n\
                camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
-        fine: 2e-5,
+        fine: 2e-4,
         least: 1e-2,
     },
     Case {
@@ -70,8 +71,8 @@ const CASES: [Case; 9] = [
                light l { from: (0, 1, 1), color: 8 }\n\
                light k { from: (-1, 0, 0.2), color: (2, 3, 4) }\n\
                camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
-        fine: 2e-3,
-        least: 1e-4,
+        fine: 8e-3,
+        least: 1e-3,
     },
     Case {
         name: "solids_in_a_medium",
@@ -79,22 +80,22 @@ const CASES: [Case; 9] = [
                medium m { region: box((1, 0.8, 1)), density: q => 1 + 0.8 * sin(5 * q.world.x), absorb: 0.2 }\n\
                light l { from: (1, 1, 0.5), color: 5 }\n\
                camera { from: (0, 0.5, 4), at: (0, 0, 0), fov: 34deg }",
-        fine: 2e-3,
-        least: 1e-4,
+        fine: 8e-3,
+        least: 1e-3,
     },
     Case {
         name: "lamp_inside",
         text: "medium m { region: sphere(1), density: q => 1.5 * falloff(0.5, 1, q.radius) }\n\
                light l { at: (0.1, 0.2, 0.1), color: 3 }\n\
                camera { from: (0, 0, 4), at: (0, 0, 0), fov: 34deg }",
-        fine: 1e-3,
-        least: 1e-3,
+        fine: 8e-3,
+        least: 1e-2,
     },
     Case {
         name: "emission_only",
         text: "medium m { region: sphere(1), density: q => 3 * max(0, perlin(3 * q.local) + 0.1), scatter: 0, emit: (1, 0.5, 0.2) }\n\
                camera { from: (0, 0, 4), at: (0, 0, 0), fov: 34deg }",
-        fine: 1e-3,
+        fine: 4e-3,
         least: 1e-4,
     },
     Case {
@@ -102,17 +103,17 @@ const CASES: [Case; 9] = [
         text: "medium m { region: sphere(2), density: q => 2 * max(0, perlin(2 * q.local) + 0.3), absorb: 0.1 }\n\
                light l { from: (1, 1, 1), color: 5 }\n\
                camera { from: (0.2, 0.1, 0.3), at: (-1, 0.3, -1), fov: 60deg }",
-        fine: 4e-3,
-        least: 1e-4,
+        fine: 8e-3,
+        least: 1e-3,
     },
 ];
 
 /// Step of the reference and least quick error of the examples with media.
 const EXAMPLES: [(&str, f32, f32); 4] = [
-    ("cloud_ball", 4e-3, 1e-3),
-    ("clouds_paper", 4e-3, 1e-3),
-    ("port_media", 4e-3, 1e-3),
-    ("tornado", 1e-3, 1e-2),
+    ("cloud_ball", 6e-3, 1e-3),
+    ("clouds_paper", 8e-3, 1e-3),
+    ("port_media", 8e-3, 1e-3),
+    ("tornado", 2e-3, 1e-2),
 ];
 
 /// The trials of this file.
@@ -140,8 +141,6 @@ pub(crate) fn trials() -> Vec<Trial> {
 /// A picture chosen for each error is as good as that.
 fn keeps_its_promise(program: &Program, fine: f32, least: f32) -> Result<(), Failed> {
     let frame = frame(program, TIME, SIZE)?;
-    let asked = std::env::var("VOL_MAX_ERROR").ok().and_then(|text| text.parse().ok());
-    let least = asked.unwrap_or(least).min(least);
     let sampling = Sampling::CENTRE;
     let job = |quadrature| Job { size: SIZE, step: fine, shadow_step: fine, quadrature, sampling };
     let reference = render(program, &frame, &job(Quadrature::Corrected), 2)?;

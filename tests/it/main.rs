@@ -16,7 +16,6 @@ mod fixes;
 mod generated;
 #[cfg(feature = "gpu")]
 mod gpu_device;
-mod ladder;
 mod library;
 mod light_grids;
 mod lights;
@@ -57,7 +56,6 @@ fn main() -> std::process::ExitCode {
     trials.extend(explain::trials());
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
-    trials.extend(ladder::trials());
     trials.extend(library::trials());
     trials.extend(light_grids::trials());
     trials.extend(lights::trials());

@@ -84,14 +84,25 @@ impl<R: Real> Grid<R> {
         let mut sum = R::ZERO;
         for i in 0..4 {
             for j in 0..4 {
-                let row = first + x.at[i] + y.at[j];
-                let [a, b, c, d] = z.at.map(|at| R::from_f32(self.table.depths[row + at]));
+                let [a, b, c, d] = self.row(first + x.at[i] + y.at[j], z.at).map(R::from_f32);
                 let [wa, wb, wc, wd] = z.weights;
                 let column = ((wa * a + wb * b) + wc * c) + wd * d;
                 sum = sum + (x.weights[i] * y.weights[j]) * column;
             }
         }
         sum.max(R::ZERO)
+    }
+
+    /// Depths of four points along the light.
+    fn row(&self, first: usize, at: [usize; 4]) -> [f32; 4] {
+        let depths = &self.table.depths[first..];
+        // With one channel they are neighbours, but at the ends.
+        if at[3] == at[0] + 3
+            && let Some(four) = depths[at[0]..].first_chunk()
+        {
+            return *four;
+        }
+        at.map(|at| depths[at])
     }
 }
 

@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn errors_are_relative() {
-        let pixel = |color| Pixel { color, transmittance: [0.0; 3], depth: 1.0 };
+        let pixel = |color| Pixel { color, transmittance: [0.0; 3], depth: 1.0, error: 0.0 };
         let colors = super::Colors { size: [1, 2], pixels: vec![[3.0, 0.0, 0.0], [0.0, 4.0, 0.0]] };
         let picture = |pixels: Vec<_>| Image { width: 1, height: 2, pixels };
         let same = picture(colors.pixels.iter().copied().map(pixel).collect());

@@ -29,7 +29,7 @@ fn with_tolerance([midpoint, corrected]: &[Image; 2]) -> impl Iterator<Item = (u
         let pixels = image.pixels.clone().into_iter().enumerate();
         pixels.map(move |(index, pixel)| (index, pixel, tolerance))
     };
-    of(midpoint, 1e-5).chain(of(corrected, 4e-3))
+    of(midpoint, 1e-5).chain(of(corrected, 1e-2))
 }
 
 fn assert_close(got: [f32; 3], want: impl Fn(f64) -> f64, tolerance: f64) {

@@ -113,7 +113,7 @@ const EXAMPLES: [(&str, f32, f32); 4] = [
     ("cloud_ball", 6e-3, 1e-3),
     ("clouds_paper", 8e-3, 1e-3),
     ("port_media", 8e-3, 1e-3),
-    ("tornado", 2e-3, 1e-2),
+    ("tornado", 1.3e-3, 1e-2),
 ];
 
 /// The trials of this file.

@@ -74,6 +74,9 @@ struct Stretch {
     open: [bool; 2],
 }
 
+/// Nodes inside a medium, where its panels will be, and the walls that end some of them.
+type Found<R> = (Vec<Place<R>>, Vec<Stretch>, Vec<Crossing<R>>);
+
 /// Two neighbouring nodes of which one is inside: distance along the ray and signed distance of each.
 #[derive(Clone, Copy, Debug)]
 struct Crossing<R> {
@@ -153,7 +156,7 @@ impl<F: Fields> Integrator<'_, F> {
         rays: &[Ray<F::Real>],
         combs: &Combs<'_, F::Real>,
         active: &[Cursor],
-    ) -> (Vec<Place<F::Real>>, Vec<Stretch>, Vec<Crossing<F::Real>>) {
+    ) -> Found<F::Real> {
         // Take the nodes of the panels in the medium's range.
         let mut runs = Vec::with_capacity(active.len());
         let (mut nodes, mut points) = (Vec::new(), Points::new());
@@ -186,7 +189,7 @@ impl<F: Fields> Integrator<'_, F> {
                 let index = offset + (node - first) as usize;
                 let ends = [index, index + 1];
                 let inside = ends.map(|end| region[end] < F::Real::ZERO);
-                if !(nodes[ends[0]].t < nodes[ends[1]].t) || inside == [false, false] {
+                if nodes[ends[0]].t >= nodes[ends[1]].t || inside == [false, false] {
                     continue;
                 }
                 let wall = places.len() + crossings.len();

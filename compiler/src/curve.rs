@@ -163,11 +163,6 @@ impl CurveTable {
     pub fn words(&self) -> Vec<f32> {
         self.pieces.iter().flat_map(Piece::words).collect()
     }
-
-    /// All nodes as words of that buffer, node `i` at word `i * Node::WORDS` of them.
-    pub fn node_words(&self) -> Vec<f32> {
-        self.nodes.iter().flat_map(Node::words).collect()
-    }
 }
 
 /// Tangents that differ by less at a joint are one.

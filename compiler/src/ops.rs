@@ -188,7 +188,7 @@ pub struct Operation {
     /// Range rule.
     pub(crate) range: range::RangeRule,
     /// WGSL text with `{0}`, `{1}` … for operands, `{d}` for the data, `{first}` and `{count}` for
-    /// the pieces of the curve, `{nodes}` and `{node_count}` for its boxes.
+    /// the pieces of the curve.
     pub wgsl: &'static str,
     /// What follows the WGSL value to read each result: nothing for operations with one.
     pub wgsl_extract: &'static [&'static str],

@@ -23,35 +23,19 @@ const ROOM: f64 = 4e-6;
 
 /// A box around consecutive pieces.
 ///
-/// | words | field | meaning |
-/// |---|---|---|
-/// | 0-2 | `lo` | smallest corner, scene units |
-/// | 3-5 | `hi` | largest corner, scene units |
-/// | 6 | `skip` | number of the node after this one's whole tree |
-/// | 7 | `first` | number of its first piece |
-/// | 8 | `end` | number of the piece after its last |
-///
-/// It is a leaf if `skip` is the next node. Words 6 to 8 are whole numbers, exact in f32.
+/// It is a leaf if `skip` is the next node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(missing_docs, reason = "the table above describes every field")]
 pub struct Node {
+    /// Smallest corner, scene units.
     pub lo: [f32; 3],
+    /// Largest corner, scene units.
     pub hi: [f32; 3],
+    /// Number of the node after this one's whole tree.
     pub skip: u32,
+    /// Number of its first piece.
     pub first: u32,
+    /// Number of the piece after its last.
     pub end: u32,
-}
-
-impl Node {
-    /// Words of one node in the storage buffer `vol_curves`.
-    pub const WORDS: usize = 9;
-
-    /// The node as words, in field order.
-    #[must_use]
-    pub fn words(&self) -> [f32; Self::WORDS] {
-        let ([a, b, c], [d, e, f]) = (self.lo, self.hi);
-        [a, b, c, d, e, f, self.skip as f32, self.first as f32, self.end as f32]
-    }
 }
 
 /// The tree over all pieces; none for a few.

@@ -4,7 +4,6 @@
 // `vol_compiler::curve::Piece`.
 
 const VOL_PIECE_WORDS: u32 = 52u;
-const VOL_NODE_WORDS: u32 = 9u;
 // Below this a divisor counts as it: quotients stay finite.
 const VOL_TINY: f32 = 1e-30;
 // Distance to a curve without pieces, scene units.
@@ -305,85 +304,18 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
     );
 }
 
-// Where a curve is: pieces `first .. first + count`, and its nodes from a word of the buffer on.
+// Where a curve is: pieces `first .. first + count` of the buffer.
 struct VolCurve {
     first: u32,
     count: u32,
-    nodes: u32,
-    node_count: u32,
 }
 
-// By how much a squared distance to a foot is taken larger before boxes are compared with it.
-const VOL_LOOSE: f32 = 1.00001;
-
-// Squared distance from a point to the box of a node, given by its first word; 0 inside.
-fn vol_box_dist_sq(p: vec3f, word: u32) -> f32 {
-    let outside = max(max(vol_curve_vector(word) - p, p - vol_curve_vector(word + 3u)), vec3f(0.0));
-    return vol_dot(outside, outside);
-}
-
-// A squared distance within which the winner lies, given that to some foot.
-fn vol_bound_of(dist_sq: f32) -> f32 {
-    return dist_sq * VOL_LOOSE;
-}
-
-// The node after all of this one's tree; a leaf's is the next one.
-fn vol_node_skip(nodes: u32, node: u32) -> u32 {
-    return u32(vol_curves[(nodes + (node * VOL_NODE_WORDS)) + 6u]);
-}
-
-// The leaf that is found by always entering the nearer half, the first of equals.
-fn vol_likely_leaf(p: vec3f, nodes: u32) -> u32 {
-    var node = 0u;
-    for (var skip = vol_node_skip(nodes, 0u); skip != node + 1u; skip = vol_node_skip(nodes, node)) {
-        let front = node + 1u;
-        let back = vol_node_skip(nodes, front);
-        let front_sq = vol_box_dist_sq(p, nodes + (front * VOL_NODE_WORDS));
-        let back_sq = vol_box_dist_sq(p, nodes + (back * VOL_NODE_WORDS));
-        node = select(front, back, back_sq < front_sq);
-    }
-    return node;
-}
-
-// Squared distance to the nearest foot on the pieces of a node.
-fn vol_nearest_in(p: vec3f, curve: VolCurve, node: u32) -> f32 {
-    let word = curve.nodes + (node * VOL_NODE_WORDS);
-    let end = u32(vol_curves[word + 8u]);
-    var nearest = VOL_LARGEST;
-    for (var index = u32(vol_curves[word + 7u]); index < end; index = index + 1u) {
-        nearest = min(nearest, vol_foot(p, (curve.first + index) * VOL_PIECE_WORDS).dist_sq);
-    }
-    return nearest;
-}
-
-// The closest point of a curve, from `vol_held_point`.
+// The closest point of a curve, from `vol_held_point`. Every point visits the same piece at the same time.
 fn vol_search(p: vec3f, curve: VolCurve) -> VolSearch {
     var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
     // Visit the pieces along the curve.
-    if (curve.node_count == 0u) {
-        for (var index = 0u; index < curve.count; index = index + 1u) {
-            search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
-        }
-        return search;
-    }
-    // Pass over boxes that are farther than a foot.
-    var bound = vol_bound_of(vol_nearest_in(p, curve, vol_likely_leaf(p, curve.nodes)));
-    var at = 0u;
-    while (at < curve.node_count) {
-        let word = curve.nodes + (at * VOL_NODE_WORDS);
-        let skip = u32(vol_curves[word + 6u]);
-        if (vol_box_dist_sq(p, word) > bound) {
-            at = skip;
-            continue;
-        }
-        if (skip == at + 1u) {
-            let end = u32(vol_curves[word + 8u]);
-            for (var index = u32(vol_curves[word + 7u]); index < end; index = index + 1u) {
-                search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
-            }
-            bound = min(bound, vol_bound_of(search.dist_sq));
-        }
-        at = at + 1u;
+    for (var index = 0u; index < curve.count; index = index + 1u) {
+        search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
     }
     return search;
 }

@@ -25,7 +25,7 @@
 //! }                         v7_go = v7_3; }
 //! ```
 
-use super::{layout, names};
+use super::names;
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::{self, Ty};
 use crate::tape::rounded;
@@ -166,17 +166,13 @@ impl Writer<'_> {
 
     fn hole(&self, hole: &str, data: u32, args: &[ValueId]) -> String {
         let curve_word = |offset: u32| {
-            let word = u64::from(self.curve_table)
-                + u64::from(layout::CURVE_WORDS) * u64::from(data)
-                + u64::from(offset);
+            let word = u64::from(self.curve_table) + 2 * u64::from(data) + u64::from(offset);
             format!("bitcast<u32>(vol_uniforms[{word}])")
         };
         match hole {
             "d" => data.to_string(),
             "first" => curve_word(0),
             "count" => curve_word(1),
-            "nodes" => curve_word(2),
-            "node_count" => curve_word(3),
             operand => {
                 let operand = operand.parse::<usize>().ok().and_then(|i| args.get(i));
                 operand.map_or_else(String::new, |&value| self.name(value))

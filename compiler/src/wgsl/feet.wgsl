@@ -48,59 +48,47 @@ fn vol_feet_of(p: vec3f, word: u32, closed: bool) -> vec3f {
     );
 }
 
-// The first foot whose number is at least `start` and whose distance is at most `most`.
+// Distance of a foot whose parameter may be -1 for none.
+fn vol_foot_distance(p: vec3f, word: u32, t: f32) -> f32 {
+    let r = vol_offset_at(p, word, vol_curve_vector(word + 6u), vol_curve_vector(word + 9u), max(t, 0.0));
+    return select(sqrt(vol_dot(r, r)), VOL_FAR, t < 0.0);
+}
+
+// The first foot whose number is at least `start` and whose distance is at most `most`. Every point visits
+// the same piece at the same time.
 fn vol_next_foot(point: vec3f, start: f32, most: f32, joined: f32, curve: VolCurve) -> VolNextFoot {
     let p = vol_held_point(point);
-    let bound = vol_bound_of(most * most);
     let number_from = u32(start);
     let closed = joined != 0.0;
-    let few = curve.node_count == 0u;
-    let node_count = select(curve.node_count, 1u, few);
-    // Pass over boxes that are too far or behind.
-    var at = 0u;
-    while (at < node_count) {
-        let word = curve.nodes + (at * VOL_NODE_WORDS);
-        var skip = 1u;
-        var first = 0u;
-        var end = curve.count;
-        var far = false;
-        if (!few) {
-            skip = u32(vol_curves[word + 6u]);
-            first = u32(vol_curves[word + 7u]);
-            end = u32(vol_curves[word + 8u]);
-            far = vol_box_dist_sq(p, word) > bound;
-        }
-        if (far | ((end * VOL_FEET) <= number_from)) {
-            at = skip;
-            continue;
-        }
-        if (skip == at + 1u) {
-            // Describe the first foot that is near enough.
-            for (var index = first; index < end; index = index + 1u) {
-                let piece = (curve.first + index) * VOL_PIECE_WORDS;
-                let feet = vol_feet_of(p, piece, closed);
-                for (var kind = 0u; kind < VOL_FEET; kind = kind + 1u) {
-                    let number = (index * VOL_FEET) + kind;
-                    if ((feet[kind] < 0.0) | (number < number_from)) {
-                        continue;
-                    }
-                    let at_foot = vol_describe(p, piece, feet[kind]);
-                    if (at_foot.distance <= most) {
-                        return VolNextFoot(
-                            f32(number + 1u),
-                            at_foot.t,
-                            at_foot.arc_length,
-                            at_foot.x,
-                            at_foot.y,
-                            at_foot.distance,
-                            at_foot.overshoot,
-                            at_foot.stretch,
-                        );
-                    }
-                }
-            }
-        }
-        at = at + 1u;
+    var winner = 0u;
+    var number = 0u;
+    var t = -1.0;
+    for (var index = 0u; index < curve.count; index = index + 1u) {
+        // The first foot of the piece that is near enough.
+        let piece = (curve.first + index) * VOL_PIECE_WORDS;
+        let first = index * VOL_FEET;
+        let feet = vol_feet_of(p, piece, closed);
+        let a = (vol_foot_distance(p, piece, feet.x) <= most) & (first >= number_from);
+        let b = (vol_foot_distance(p, piece, feet.y) <= most) & ((first + 1u) >= number_from);
+        let c = (vol_foot_distance(p, piece, feet.z) <= most) & ((first + 2u) >= number_from);
+        let found = (t < 0.0) & ((a | b) | c);
+        t = select(t, select(select(feet.z, feet.y, b), feet.x, a), found);
+        number = select(number, first + select(select(2u, 1u, b), 0u, a), found);
+        winner = select(winner, index, found);
     }
-    return VolNextFoot(start, 0.0, 0.0, 0.0, 0.0, VOL_FAR, 0.0, 1.0);
+    if (t < 0.0) {
+        return VolNextFoot(start, 0.0, 0.0, 0.0, 0.0, VOL_FAR, 0.0, 1.0);
+    }
+    // Describe it.
+    let found = vol_describe(p, (curve.first + winner) * VOL_PIECE_WORDS, t);
+    return VolNextFoot(
+        f32(number + 1u),
+        found.t,
+        found.arc_length,
+        found.x,
+        found.y,
+        found.distance,
+        found.overshoot,
+        found.stretch,
+    );
 }

@@ -2,8 +2,8 @@
 //!
 //! | binding | name | words |
 //! |---|---|---|
-//! | 0 | `vol_uniforms` | outputs of the frame function (f32), then for each curve its first piece, its number of pieces, the first word of its nodes and their number (u32) |
-//! | 1 | `vol_curves` | pieces of all curves, [`Piece::WORDS`] each, then their nodes, [`Node::WORDS`] each (f32) |
+//! | 0 | `vol_uniforms` | outputs of the frame function (f32), then for each curve its first piece and its number of pieces (u32) |
+//! | 1 | `vol_curves` | pieces of all curves, [`Piece::WORDS`] each (f32) |
 //! | 2 | `vol_permutation` | permutation of the noise with seed 0 (u32) |
 //! | 3 | `vol_input` | what the entry point says (f32) |
 //! | 4 | `vol_output` | what the entry point says (f32) |
@@ -11,7 +11,7 @@
 //! All are storage buffers of group 0, the last one writable. Words that are integers are read with
 //! `bitcast`, which keeps their bits even where a driver flushes denormals.
 
-use crate::curve::{CurveTable, Node, Piece};
+use crate::curve::Piece;
 use crate::frame::Frame;
 use crate::ir::Module;
 use crate::noise_table;
@@ -39,28 +39,20 @@ pub(super) fn curve_table(module: &Module) -> u32 {
 #[must_use]
 pub fn uniform_words(frame: &Frame) -> Vec<u32> {
     let mut words: Vec<u32> = frame.uniforms_f32.iter().map(|x| x.to_bits()).collect();
-    let (mut first, mut node) = (0, pieces(frame) * Piece::WORDS);
+    let mut first = 0;
     for table in &frame.curve_tables {
-        let (count, nodes) = (table.pieces.len(), table.nodes.len());
-        words.extend([first, count, node, nodes].map(|word| word as u32));
+        let count = table.pieces.len() as u32;
+        words.extend([first, count]);
         first += count;
-        node += nodes * Node::WORDS;
     }
     words
-}
-
-/// Words that [`uniform_words`] has for each curve.
-pub(super) const CURVE_WORDS: u32 = 4;
-
-fn pieces(frame: &Frame) -> usize {
-    frame.curve_tables.iter().map(|table| table.pieces.len()).sum()
 }
 
 /// Words of `vol_curves`.
 #[must_use]
 pub fn curve_words(frame: &Frame) -> Vec<u32> {
-    let pieces = frame.curve_tables.iter().flat_map(CurveTable::words);
-    pieces.chain(frame.curve_tables.iter().flat_map(CurveTable::node_words)).map(f32::to_bits).collect()
+    let pieces = frame.curve_tables.iter().flat_map(|table| &table.pieces);
+    pieces.flat_map(Piece::words).map(f32::to_bits).collect()
 }
 
 /// Words of `vol_permutation`.

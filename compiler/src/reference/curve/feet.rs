@@ -80,7 +80,7 @@ fn feet_of(p: Vector, arms: &[Arm], parts: &[Part], index: usize, closed: bool) 
     let before = &parts[index.checked_sub(1).unwrap_or(parts.len() - 1)];
     let joined_before = if index > 0 { touch(arms, before, part) } else { closed };
     let joined_after = parts.get(index + 1).map_or(closed, |next| touch(arms, part, next));
-    let grew = grows(p, &arms[before.arm], before, before.to);
+    let grew = dot(sub(arm.point(part.from), p), tangent(&arms[before.arm], before, before.to));
     let enters = entering >= 0.0 && (!joined_before || grew <= 0.0);
     let leaves = !joined_after && leaving <= 0.0;
     let inside = inside(p, arm, part, [entering, leaving]);
@@ -91,15 +91,18 @@ fn touch(arms: &[Arm], part: &Part, next: &Part) -> bool {
     norm(sub(arms[next.arm].point(next.from), arms[part.arm].point(part.to))) <= 1e-9
 }
 
-/// The distance's growth along the tangent at an end of a part; at a cusp the tangent within the part.
+/// The distance's growth along the tangent at an end of a part.
 fn grows(p: Vector, arm: &Arm, part: &Part, u: f64) -> f64 {
-    let tangent = if arm.cusp {
+    dot(sub(arm.point(u), p), tangent(arm, part, u))
+}
+
+/// Unit tangent at an end of a part; at a cusp that within the part.
+fn tangent(arm: &Arm, part: &Part, u: f64) -> Vector {
+    if arm.cusp {
         let forward = 0.5 * (part.from + part.to) >= arm.vertex;
-        unit(if forward { arm.b2 } else { arm.b2.map(|x| -x) })
-    } else {
-        unit(arm.half_velocity(u))
-    };
-    dot(sub(arm.point(u), p), tangent)
+        return unit(if forward { arm.b2 } else { arm.b2.map(|x| -x) });
+    }
+    unit(arm.half_velocity(u))
 }
 
 /// The foot inside a part: there is at most one, since the distance's growth is convex or concave along it.

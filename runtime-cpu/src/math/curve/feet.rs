@@ -10,7 +10,7 @@
 //! words about the same joint (`vol_compiler::curve::Piece`), so that a foot beside a joint is counted
 //! once, however it is rounded. Source: `algorithms.md` §3.1.
 //!
-//! Twin: `compiler/src/wgsl/feet.wgsl`.
+//! Twin: `compiler/src/wgsl/feet.wgsl`, where every point looks at all pieces.
 
 use super::{CurvePoint, NOWHERE, describe, dot, end_from_point, from_point, held_point, inner, nodes};
 use vol_compiler::curve::{Node, Piece};
@@ -52,22 +52,22 @@ pub fn feet_of(p: [f32; 3], piece: &Piece, closed: bool) -> [f32; 3] {
     [if enters { first } else { -1.0 }, if inside { found.t } else { -1.0 }, if leaves { last } else { -1.0 }]
 }
 
-/// The first foot whose number is at least `from` and whose distance is at most `most`.
+/// The first foot whose number is at least `start` and whose distance is at most `most`.
 ///
-/// * `from`: a whole number, 0 or what the last call said; `most`: scene units, at most 1e15
+/// * `start`: a whole number, 0 or what the last call said; `most`: scene units, at most 1e15
 /// * `closed`: whether the end of the curve is joined to its start
 /// * error: that of [`super::closest`] for the coordinates of a foot; whether there is one is sure
 ///   where the point is farther than rounding from the surface at distance `most` and from focal lines
 ///   (test `feet_agree_with_f64`)
 pub fn next_foot(
     point: [f32; 3],
-    [from, most, closed]: [f32; 3],
+    [start, most, closed]: [f32; 3],
     pieces: &[Piece],
     nodes: &[Node],
 ) -> NextFoot {
     let p = held_point(point);
     let bound = nodes::bound_of(most * most);
-    let (from, closed) = (from as u32, closed != 0.0);
+    let (from, closed) = (start as u32, closed != 0.0);
     let whole = Node { lo: [0.0; 3], hi: [0.0; 3], skip: 1, first: 0, end: pieces.len() as u32 };
     let few = nodes.is_empty();
     let nodes = if few { std::slice::from_ref(&whole) } else { nodes };
@@ -97,5 +97,5 @@ pub fn next_foot(
         }
         at += 1;
     }
-    NextFoot { next: from as f32, point: CurvePoint { x: 0.0, ..NOWHERE } }
+    NextFoot { next: start, point: CurvePoint { x: 0.0, ..NOWHERE } }
 }

@@ -5,7 +5,8 @@
 //! is in a box farther away than some foot is, so that it could not have won (test
 //! `trees_change_nothing`).
 //!
-//! Twin: the functions of these names in `compiler/src/wgsl/curve.wgsl`.
+//! No twin: on the GPU all pieces are visited, by all points at once. A walk that differs from point to point
+//! was tried there; software drivers took minutes to compile it.
 
 use super::{Search, foot};
 use crate::math::fun::greater;

@@ -166,7 +166,13 @@ fn grids_stand_where_the_records_say() {
         Some(std::sync::Arc::new(grid))
     };
     frame.light_grids = vec![grid(vec![7.0; 20]), None, grid(vec![9.0; 60])];
-    let job = Job { size: [4, 4], step: 0.1, shadow_step: 0.2, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE };
+    let job = Job {
+        size: [4, 4],
+        step: 0.1,
+        shadow_step: 0.2,
+        quadrature: Quadrature::Midpoint,
+        sampling: Sampling::CENTRE,
+    };
     let mut words = frame_words(&program, &frame, &job, [0; 4], 1);
     words.extend(grid_words(&frame, words.len()));
     let word = |at: usize| f32::from_bits(words[at]);

@@ -35,7 +35,7 @@ fn ball(centre: [f64; 3], radius: f64, extinction: [f64; 3]) -> Gas {
     Gas {
         region: sphere(centre, radius, 1.0)[0].clone(),
         bounds: Aabb { lo: corner(-1.0), hi: corner(1.0) },
-        extinction: constant("extinction", 3, &extinction),
+        extinction: constant("extinction", 3, &[&[1.0][..], &extinction].concat()),
         ..Gas::uniform([1.0; 3], [0.5; 3], extinction, [0.0; 3], Lighting::Shadowed)
     }
 }

@@ -262,11 +262,11 @@ fn roulette_keeps_the_mean() {
     let gas = Gas::uniform([1.0; 3], [0.0; 3], [4.0; 3], [0.0; 3], Lighting::None);
     // 4 + 100 x - 100 x: intervals do not know that it is 4.
     let mut body = Body::new("extinction", 3);
-    let (hundred, four) = (body.number(100.0), body.number(4.0));
+    let (one, hundred, four) = (body.number(1.0), body.number(100.0), body.number(4.0));
     let product = body.apply(Op::Mul, &[body.input(0), hundred]);
     let more = body.apply(Op::Add, &[product, four]);
     let same = body.apply(Op::Sub, &[more, product]);
-    world.medium(Gas { extinction: body.finish(&[same; 3]), ..gas });
+    world.medium(Gas { extinction: body.finish(&[one, same, same, same]), ..gas });
     let way = Way::new(Method::MonteCarlo { seed: 1 }, &world.program, &world.frame).expect("bounded");
     let scene = Scene { way, ..Scene::new(&world.frame, &job(1.0, 1)) };
     let tapes = Tapes::new(&world.program);
@@ -321,7 +321,8 @@ fn no_extinction_is_above_its_majorant() {
                 vol_compiler::reference::evaluate(function, &p, &[], &[])
             };
             if of(medium.region)[0] < 0.0 {
-                total += of(medium.extinction).into_iter().fold(0.0, f64::max);
+                let [density, r, g, b] = of(medium.extinction)[..] else { unreachable!("four outputs") };
+                total += density.max(0.0) * r.max(g).max(b);
             }
         }
         let rate = grid.rate_at(p);
@@ -401,7 +402,7 @@ fn jittered_steps_have_the_same_mean() {
 fn gas_without_a_bound_is_refused() {
     let mut world = slab(0.0, 0.0, Lighting::None);
     let gas = Gas::uniform([1.0; 3], [0.0; 3], [f64::INFINITY; 3], [0.0; 3], Lighting::None);
-    world.medium(Gas { interior: constant("interior", 3, &[f64::INFINITY; 9]), ..gas });
+    world.medium(Gas { interior: constant("interior", 3, &[f64::INFINITY; 10]), ..gas });
     let method = Method::MonteCarlo { seed: 0 };
     let found =
         render_by(method, &world.program, &world.frame, &job(1.0, 1), &|_| {}, &AtomicBool::new(false));

@@ -117,7 +117,8 @@ fn compare(p: [f32; 3], segments: &[Quadratic], worst: &mut Worst) {
     assert!(all.iter().all(|x| x.is_finite()), "{segments:?} {p:?} {found:?}");
     let points = || segments.iter().flat_map(|s| [s.a, s.b, s.c]);
     let span = points().map(|q| norm(along(q, -1.0, segments[0].a))).fold(0.0, f64::max);
-    let scale = span.max(truth.distance).max(1e-30);
+    let from_start = norm(along(p.map(f64::from), -1.0, segments[0].a));
+    let scale = span.max(from_start).max(1e-30);
     let error = |a: f32, b: f64, sink: &mut f64| *sink = sink.max((f64::from(a) - b).abs() / scale);
     error(found.distance, truth.distance, &mut worst.distance);
     let length = (f64::from(found.curve_length) - truth.curve_length).abs() / truth.curve_length.max(scale);

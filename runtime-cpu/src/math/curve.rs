@@ -59,7 +59,7 @@ pub struct CurvePoint {
     pub overshoot: f32,
     /// Volume factor 1 - kappa o.N of the offset, `D(t) / (2 |v|^2)` at a foot inside a piece, held
     /// within 0..=1e6; 1 on straight pieces, cusps and points; 0 on the focal line. Error
-    /// 2e-6 (1 + stretch) times scale over size of the curve.
+    /// 6e-6 (1 + stretch) times scale over size of the curve.
     pub stretch: f32,
 }
 

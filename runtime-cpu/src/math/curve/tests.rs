@@ -142,7 +142,7 @@ fn assert_within(worst: &Worst, name: &str) {
     assert!(worst.distance <= 2e-7, "{name}: {worst:?}");
     assert!(worst.arc <= 1e-6 && worst.frame <= 1e-6, "{name}: {worst:?}");
     assert!(worst.slide <= 1e-6, "{name}: {worst:?}");
-    assert!(worst.overshoot <= 4e-7 && worst.stretch <= 2e-6, "{name}: {worst:?}");
+    assert!(worst.overshoot <= 4e-7 && worst.stretch <= 6e-6, "{name}: {worst:?}");
 }
 
 /// `VOL_CURVES=100000` makes it 1e6 curves.

@@ -196,7 +196,7 @@ fn crossing_parts_add_their_mass() -> Result<(), Failed> {
     let open = "30 * pow(q.local.y * (1 - q.local.y), 2)";
     let cases = [
         ("bezier((-1, -0.6, 0), (3, 1.6, 0), (-3, 1.6, 0), (1, -0.6, 0))", 0.25, open),
-        ("catmull_rom([(1, 0.5, 0), (1, -0.5, 0), (-1, 0.5, 0.02), (-1, -0.5, 0)], closed: true)", 0.3, "1"),
+        ("catmull_rom([(1, 0.5, 0), (1, -0.5, 0), (-1, 0.5, 0.02), (-1, -0.5, 0)], closed: true)", 0.15, "1"),
         ("helix(0.6, 0.5, 3)", 0.2, open),
     ];
     for (curve, radius, along) in cases {

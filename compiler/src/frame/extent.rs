@@ -278,7 +278,7 @@ impl Space<'_> {
         let smooth = |place: usize| joins(segments, place, 0.0);
         let (Some(first), Some(last)) = (segments.first(), segments.last()) else { return vec![ALL] };
         let ends = [(first.a, -velocity(first, 0.0), 0.0), (last.c, velocity(last, 1.0), 1.0)];
-        let stands = ends.iter().any(|(_, direction, _)| !(direction.length() > 0.0));
+        let stands = ends.iter().any(|(_, direction, _)| direction.length() == 0.0 || !direction.is_finite());
         if stands || !(1..segments.len()).all(smooth) {
             return vec![ALL];
         }

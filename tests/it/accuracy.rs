@@ -109,10 +109,12 @@ const CASES: [Case; 9] = [
 ];
 
 /// Step of the reference and least quick error of the examples with media.
-const EXAMPLES: [(&str, f32, f32); 4] = [
+const EXAMPLES: [(&str, f32, f32); 6] = [
     ("cloud_ball", 6e-3, 1e-3),
     ("clouds_paper", 8e-3, 1e-3),
+    ("galaxy", 2e-3, 1e-2),
     ("port_media", 8e-3, 1e-3),
+    ("solar_flare", 1e-3, 1e-2),
     ("tornado", 1.3e-3, 1e-2),
 ];
 

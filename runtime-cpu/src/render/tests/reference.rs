@@ -137,10 +137,10 @@ fn paths_through_a_slab() {
     let pictures = draws(&world, 1, 2000);
     for index in 0..pictures[0].pixels.len() {
         let chord = 2.0 * norm(toward(SIZE, SLOPE, index));
-        for channel in 0..3 {
-            let through = (-EXTINCTION[channel] * chord).exp();
-            let lit = f64::from(world.frame.background[channel]) * through
-                + 0.4 * (1.0 - through) / EXTINCTION[channel];
+        for (channel, extinction) in EXTINCTION.into_iter().enumerate() {
+            let through = (-extinction * chord).exp();
+            let lit =
+                f64::from(world.frame.background[channel]) * through + 0.4 * (1.0 - through) / extinction;
             let pixel = |picture: &Image| picture.pixels[index];
             let (found, error) = mean(pictures.iter().map(|p| f64::from(pixel(p).transmittance[channel])));
             assert!((found - through).abs() < 4.5 * error, "{found} for {through} within {error}");
@@ -344,8 +344,8 @@ fn fixed_steps_are_the_papers_loop() {
             let chord = 2.0 * norm(toward(SIZE, SLOPE, index));
             let count = (chord * 1.00002 / f64::from(step)).ceil();
             let stride = chord / count;
-            for channel in 0..3 {
-                let kept = (-EXTINCTION[channel] * stride).exp();
+            for (channel, extinction) in EXTINCTION.into_iter().enumerate() {
+                let kept = (-extinction * stride).exp();
                 let through = kept.powf(count);
                 let glow = 0.4 * stride * kept * (1.0 - through) / (1.0 - kept);
                 let lit = f64::from(world.frame.background[channel]) * through + glow;
@@ -369,8 +369,8 @@ fn fixed_steps_are_of_first_order() {
         let mut worst: f64 = 0.0;
         for (index, pixel) in by(&world, method, &job(step, 1)).0.pixels.iter().enumerate() {
             let slant = norm(toward(SIZE, SLOPE, index));
-            for channel in 0..3 {
-                let rate = EXTINCTION[channel] * (1.0 + slant);
+            for (channel, extinction) in EXTINCTION.into_iter().enumerate() {
+                let rate = extinction * (1.0 + slant);
                 let lit = 0.3 * 5.0 / (4.0 * PI) * slant * -(-rate * 2.0).exp_m1() / rate;
                 let behind = world.frame.background[channel] * pixel.transmittance[channel];
                 worst = worst.max((f64::from(pixel.color[channel] - behind) - lit).abs() / lit);

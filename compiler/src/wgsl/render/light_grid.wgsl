@@ -31,18 +31,20 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
     let z = stencil(min(place.z, last.z), last.z, channels);
     let first = u32(vol_input[grid + 26u]);
     let tint = word3(grid + 22u);
-    let red = grid_channel(first, x, y, z);
-    if (channels == 1u) {
-        return tint * red;
+    var depth = vec3f(0.0);
+    for (var channel = 0u; channel < channels; channel++) {
+        depth[channel] = grid_channel(first + channel, x, y, z, channels);
     }
-    return tint * vec3f(red, grid_channel(first + 1u, x, y, z), grid_channel(first + 2u, x, y, z));
+    return tint * select(depth, vec3f(depth.x), channels == 1u);
 }
 
 // One channel between the points around; what the cubic overshoots below 0 is cut off.
-fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil) -> f32 {
+fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil, channels: u32) -> f32 {
+    // Always 4, which no driver knows: unrolled wherever it is asked for, this compiles for minutes.
+    let four = min(channels + 3u, 4u);
     var sum = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        for (var j = 0u; j < 4u; j++) {
+    for (var i = 0u; i < four; i++) {
+        for (var j = 0u; j < four; j++) {
             let row = (first + x.at[i]) + y.at[j];
             let ab = (z.weights.x * vol_input[row + z.at.x]) + (z.weights.y * vol_input[row + z.at.y]);
             let abc = ab + (z.weights.z * vol_input[row + z.at.z]);

@@ -163,6 +163,7 @@ fn glue(program: &Program, quadrature: Quadrature) -> String {
         ("CORRECTED", quadrature == Quadrature::Corrected),
         ("SOFT_LIGHTS", lights.iter().any(|light| light.size.is_some())),
         ("OCCLUDING_LIGHTS", lights.iter().any(|light| light.occlusion.is_some())),
+        ("LIGHT_GRIDS", media > 0 && !lights.is_empty()),
     ];
     for (name, value) in switches {
         text += &format!("const {name}: bool = {value};\n");

@@ -26,8 +26,10 @@ fn through_media(ray: Ray, distance: f32, part: f32, grid: u32) -> vec3f {
 
 // Optical depth between a point and a light: of its grid where it has one.
 fn depth_towards(ray: Ray, distance: f32, grid: u32) -> vec3f {
-    if (grid != 0u) {
-        return grid_depth(grid, ray.origin);
+    if (LIGHT_GRIDS) {
+        if (grid != 0u) {
+            return grid_depth(grid, ray.origin);
+        }
     }
     return optical_depth(ray, distance);
 }

@@ -5,7 +5,7 @@ use crate::{differential, docs, examples, spec};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol::backend::Device;
-use vol_compiler::frame::Frame;
+use vol_compiler::frame::{Frame, Quadrature};
 use vol_compiler::library::library;
 use vol_compiler::program::Program;
 
@@ -30,7 +30,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         #[cfg(feature = "gpu")]
         trials
             .push(crate::gpu_device::gpu_trial(&format!("pages::{name}_agrees_with_the_cpu"), move |gpu| {
-                examples::agrees(gpu, &program(&text)?)
+                examples::agrees(gpu, &program(&text)?, Quadrature::Midpoint)
             }));
     }
     trials

@@ -57,14 +57,8 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     comb.first = whole.x;
     comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        // Panels have no weights.
-        if (CORRECTED) {
-            comb.own[medium] = FAR;
-            continue;
-        }
-        let range = comb.ranges[medium];
-        comb.before[medium] = wall(ray, medium, range, comb.first - 1, step_size, end);
-        comb.own[medium] = wall(ray, medium, range, comb.first, step_size, end);
+        comb.before[medium] = FAR;
+        comb.own[medium] = FAR;
     }
     return comb;
 }
@@ -109,7 +103,8 @@ fn share(own: f32, other: f32, step_size: f32) -> f32 {
 }
 
 // The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from the first one.
+// come in order, from two before the first one: so that regions are asked at one place of the text,
+// since drivers write them out at each.
 fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
     var any_inside = false;
     let step_size = (*comb).step;
@@ -118,8 +113,9 @@ fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, 
         let own = (*comb).own[medium];
         let after = wall(ray, medium, (*comb).ranges[medium], node + 1, step_size, (*comb).end);
         let weight = share(own, before, step_size) + share(own, after, step_size);
-        (*weights)[medium] = select(0.0, weight, own < 0.0);
-        any_inside = any_inside | (own < 0.0);
+        let is_inside = (own < 0.0) & (node >= (*comb).first);
+        (*weights)[medium] = select(0.0, weight, is_inside);
+        any_inside = any_inside | is_inside;
         (*comb).before[medium] = own;
         (*comb).own[medium] = after;
     }

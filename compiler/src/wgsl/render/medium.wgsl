@@ -33,7 +33,7 @@ fn march_nodes(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
     var comb = new_comb(ray, end, vol_input[AT_STEP]);
     var weights: array<f32, MEDIUM_SLOTS>;
-    for (var node = comb.first; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {
             glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, 0.5), &weights));
         }

@@ -73,7 +73,7 @@ fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
     var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
     var weights: array<f32, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = comb.first; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node++) {
         // Optical depth of each node, all media together.
         if (weigh(ray, &comb, node, &weights)) {
             depth += node_depth(ray_at(ray, node_distance(node, comb.step, 0.5)), &weights);

@@ -79,7 +79,7 @@ impl Colors {
     }
 }
 
-/// Reads the colours of an OpenEXR file, such as [`write`] makes.
+/// Reads the colours of an OpenEXR file, such as [`write()`] makes.
 ///
 /// # Errors
 /// A usage failure if the file cannot be read or has no `R`, `G` and `B`.

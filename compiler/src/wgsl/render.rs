@@ -27,7 +27,7 @@
 //! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
 //! | after them | `AT_LIGHTS` | 11 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none) |
 //! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
-//! | after them | | 27 words per grid, see [`LightGrid`](crate::frame::LightGrid): distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth |
+//! | after them | | 27 words per grid, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth |
 //! | after them | | the depths of the grids, each from a multiple of 64 words on: [`grid_words`] |
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device

@@ -12,6 +12,19 @@ use vol_compiler::program::Program;
 /// The pages, each with a folder of pictures.
 const PAGES: [&str; 4] = ["shapes", "figures", "tubes", "volumes"];
 
+/// Scenes of this page take software Vulkan more than a minute each to compile; the examples have tubes, too.
+#[cfg(feature = "gpu")]
+const SLOW_PAGE: &str = "tubes_";
+
+/// Left out unless it is asked for.
+#[cfg(feature = "gpu")]
+fn slow(trial: Trial) -> Trial {
+    if trial.has_ignored_flag() {
+        return trial;
+    }
+    trial.with_ignored_flag(true).with_kind("minutes on software Vulkan: --include-ignored")
+}
+
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = vec![
@@ -28,10 +41,14 @@ pub(crate) fn trials() -> Vec<Trial> {
         };
         trials.push(Trial::test(format!("pages::{name}_agrees_with_the_reference"), reference));
         #[cfg(feature = "gpu")]
-        trials
-            .push(crate::gpu_device::gpu_trial(&format!("pages::{name}_agrees_with_the_cpu"), move |gpu| {
+        {
+            let is_slow = name.starts_with(SLOW_PAGE);
+            let name = format!("pages::{name}_agrees_with_the_cpu");
+            let trial = crate::gpu_device::gpu_trial(&name, move |gpu| {
                 examples::agrees(gpu, &program(&text)?, Quadrature::Midpoint)
-            }));
+            });
+            trials.push(if is_slow { slow(trial) } else { trial });
+        }
     }
     trials
 }

@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use vol_compiler::frame::Quadrature;
 use vol_compiler::{lints, lower, wgsl};
 use vol_language::diag::{Diagnostic, render};
 use vol_language::source::SourceFile;
@@ -22,7 +23,9 @@ fuzz_target!(|bytes: &[u8]| {
         render::human(&sources, &diagnostics, false)
     );
     let program = program.expect("a scene without errors is compiled");
-    wgsl::render::render_module(&program).expect("the shader is accepted");
+    for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
+        wgsl::render::render_module(&program, quadrature).expect("the shader is accepted");
+    }
     // A frame may be refused with a message: what params and time set is not known before.
     if let Ok(frame) = program.frame(&program.default_params(), 0.5, 1.0, [64, 36]) {
         lints::warnings(&program, &frame);

@@ -37,17 +37,19 @@ pub(crate) fn trials() -> Vec<Trial> {
         });
         trials.push(trial);
         #[cfg(feature = "gpu")]
-        trials.push(crate::gpu_device::gpu_trial(
-            &format!("examples::{name}_agrees_with_the_cpu"),
-            move |gpu| {
-                let program = compile_file(&path)?;
-                agrees(gpu, &program, Quadrature::Midpoint)?;
-                if CORRECTED.contains(&name.as_str()) {
-                    agrees(gpu, &program, Quadrature::Corrected)?;
-                }
-                Ok(())
-            },
-        ));
+        {
+            let is_slow = SLOW.contains(&name.as_str());
+            let trial =
+                crate::gpu_device::gpu_trial(&format!("examples::{name}_agrees_with_the_cpu"), move |gpu| {
+                    let program = compile_file(&path)?;
+                    agrees(gpu, &program, Quadrature::Midpoint)?;
+                    if CORRECTED.contains(&name.as_str()) {
+                        agrees(gpu, &program, Quadrature::Corrected)?;
+                    }
+                    Ok(())
+                });
+            trials.push(if is_slow { crate::gpu_device::slow(trial) } else { trial });
+        }
     }
     trials
 }
@@ -91,6 +93,10 @@ fn quadratures(program: &Program) -> &'static [Quadrature] {
     let all = &[Quadrature::Midpoint, Quadrature::Corrected];
     if program.media.is_empty() { &all[..1] } else { all }
 }
+
+/// Examples with tubes beside the tornado, which is drawn always.
+#[cfg(feature = "gpu")]
+const SLOW: [&str; 2] = ["galaxy", "solar_flare"];
 
 /// Examples that are drawn with the corrected form on the GPU, too: each form is a shader of its own, and software
 /// Vulkan takes long for one.

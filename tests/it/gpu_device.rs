@@ -36,6 +36,14 @@ fn ignored(trial: Trial, reason: &str) -> Trial {
     trial.with_ignored_flag(true).with_kind(format!("no GPU: {reason}"))
 }
 
+/// A trial that is left out unless it is asked for: software Vulkan compiles its shader for minutes.
+pub(crate) fn slow(trial: Trial) -> Trial {
+    if trial.has_ignored_flag() {
+        return trial;
+    }
+    trial.with_ignored_flag(true).with_kind("minutes on software Vulkan: --include-ignored")
+}
+
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     vec![

@@ -16,15 +16,6 @@ const PAGES: [&str; 4] = ["shapes", "figures", "tubes", "volumes"];
 #[cfg(feature = "gpu")]
 const SLOW_PAGE: &str = "tubes_";
 
-/// Left out unless it is asked for.
-#[cfg(feature = "gpu")]
-fn slow(trial: Trial) -> Trial {
-    if trial.has_ignored_flag() {
-        return trial;
-    }
-    trial.with_ignored_flag(true).with_kind("minutes on software Vulkan: --include-ignored")
-}
-
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = vec![
@@ -47,7 +38,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             let trial = crate::gpu_device::gpu_trial(&name, move |gpu| {
                 examples::agrees(gpu, &program(&text)?, Quadrature::Midpoint)
             });
-            trials.push(if is_slow { slow(trial) } else { trial });
+            trials.push(if is_slow { crate::gpu_device::slow(trial) } else { trial });
         }
     }
     trials

@@ -82,10 +82,19 @@ pub(crate) fn reference(program: &Program) -> Result<(), Failed> {
         let job = Job { size: REFERENCE_SIZE, quadrature, ..JOB };
         let actual = render(program, &frame, &job, 2)?;
         let expected = compare::reference_picture(program, &frame, &job);
-        let report = compare::images(&actual, &expected, compare::PRECISION);
+        let report = compare::images(&actual, &expected, class(quadrature));
         ensure(report.passes(), || format!("{quadrature:?} {report:?}"))?;
     }
     Ok(())
+}
+
+/// What f32 may differ from f64. A sample within rounding of the place where density is cut off gives the
+/// corrected form's end term to one node or to the next: at the coarse steps here that shows.
+fn class(quadrature: Quadrature) -> compare::ImageClass {
+    match quadrature {
+        Quadrature::Midpoint => compare::PRECISION,
+        Quadrature::Corrected => compare::ImageClass { threshold: 2e-3, ..compare::PRECISION },
+    }
 }
 
 /// Those that differ.

@@ -214,6 +214,26 @@ pub fn difference(a: &Pixel, b: &Pixel) -> f64 {
     worst.max(depth)
 }
 
+/// Root mean square of the differences of pairs (found, right) over that of the right numbers; 0 if all are
+/// equal, infinite if only all right ones are 0.
+#[must_use]
+pub fn relative_rms(pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let (mut apart, mut whole) = (0.0_f64, 0.0_f64);
+    for (found, right) in pairs {
+        apart += (found - right).powi(2);
+        whole += right * right;
+    }
+    if apart == 0.0 { 0.0 } else { (apart / whole).sqrt() }
+}
+
+/// [`relative_rms`] of the colours of two pictures of one size.
+#[must_use]
+pub fn color_error(found: &Image, right: &Image) -> f64 {
+    let colors = |image: &Image| image.pixels.iter().flat_map(|pixel| pixel.color).map(f64::from).collect();
+    let [found, right]: [Vec<f64>; 2] = [colors(found), colors(right)];
+    relative_rms(found.into_iter().zip(right))
+}
+
 /// Whether two rays met the same surface, or none: depths within one percent.
 fn same_surface(a: &Pixel, b: &Pixel) -> bool {
     a.depth == b.depth || relative(a.depth, b.depth) <= 0.01

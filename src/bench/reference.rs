@@ -13,6 +13,7 @@ use vol_compiler::frame::{Frame, Image};
 use vol_compiler::ir::text::print_module;
 use vol_compiler::program::Program;
 
+use crate::compare::relative_rms;
 use crate::failure::Failure;
 use crate::output::atomic;
 
@@ -46,7 +47,7 @@ impl Reference {
         let mut change = f64::INFINITY;
         for level in 1..=levels {
             let finer = expose(&places, level)?;
-            change = relative_rms(&colors, &finer);
+            change = error_of(&colors, &finer);
             colors = finer;
             if change <= wanted {
                 break;
@@ -63,7 +64,7 @@ impl Reference {
             let pixel = &image.pixels[y as usize * image.width as usize + x as usize];
             pixel.color.map(f64::from)
         });
-        relative_rms(&found.collect::<Vec<_>>(), &self.colors)
+        error_of(&found.collect::<Vec<_>>(), &self.colors)
     }
 
     /// Reads one that was kept; none if there is none that can be read.
@@ -129,12 +130,8 @@ pub fn spread(size: [u32; 2], count: usize) -> Vec<[u32; 2]> {
     places
 }
 
-/// Rms of the difference over rms of `right`; 0 if both are black.
-fn relative_rms(found: &[[f64; 3]], right: &[[f64; 3]]) -> f64 {
-    let pairs = found.as_flattened().iter().zip(right.as_flattened());
-    let apart: f64 = pairs.map(|(a, b)| (a - b).powi(2)).sum();
-    let whole: f64 = right.as_flattened().iter().map(|b| b * b).sum();
-    if apart > 0.0 { (apart / whole.max(f64::MIN_POSITIVE)).sqrt() } else { 0.0 }
+fn error_of(found: &[[f64; 3]], right: &[[f64; 3]]) -> f64 {
+    relative_rms(found.as_flattened().iter().copied().zip(right.as_flattened().iter().copied()))
 }
 
 #[cfg(test)]

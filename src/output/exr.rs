@@ -25,6 +25,7 @@ use exr::prelude::{
 use vol_compiler::frame::{Image, Pixel};
 
 use super::atomic::Sink;
+use crate::compare::relative_rms;
 use crate::failure::Failure;
 
 /// Writes `picture` as an OpenEXR file of one part.
@@ -68,14 +69,10 @@ impl Colors {
     /// pictures, infinite if this one is black and the other is not.
     #[must_use]
     pub fn error_of(&self, picture: &Image) -> f64 {
-        let (mut apart, mut whole) = (0.0_f64, 0.0_f64);
-        for (expected, found) in self.pixels.iter().zip(&picture.pixels) {
-            for (&expected, &found) in expected.iter().zip(&found.color) {
-                apart += (f64::from(found) - f64::from(expected)).powi(2);
-                whole += f64::from(expected).powi(2);
-            }
-        }
-        if apart == 0.0 { 0.0 } else { (apart / whole).sqrt() }
+        let found = picture.pixels.iter().flat_map(|pixel| pixel.color);
+        relative_rms(
+            found.zip(self.pixels.iter().flatten()).map(|(found, &right)| (found.into(), right.into())),
+        )
     }
 }
 

@@ -11,6 +11,7 @@
 
 use crate::support::{compile, compile_file, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
+use vol::compare::color_error;
 use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
@@ -147,13 +148,12 @@ fn keeps_its_promise(program: &Program, fine: f32, least: f32) -> Result<(), Fai
     let job = |quadrature| Job { size: SIZE, step: fine, shadow_step: fine, quadrature, sampling };
     let reference = render(program, &frame, &job(Quadrature::Corrected), 2)?;
     let witness = render(program, &frame, &job(Quadrature::Midpoint), 2)?;
-    let apart = error(&witness, &reference);
+    let apart = color_error(&witness, &reference);
     ensure(apart <= 0.5 * f64::from(least), || format!("the reference is only good to {apart:.1e}"))?;
     for max_error in [1e-2, 1e-3, 1e-4].into_iter().filter(|&error| error >= least) {
         let choice = vol_runtime_cpu::choose_step(program, &frame, SIZE, max_error);
         let mut picture = render(program, &frame, &choice.job(SIZE, sampling), 2)?;
-        let found = error(&picture, &reference);
-        println!("{max_error:.0e} error {found:.1e}, witness {apart:.1e}, {choice:?}");
+        let found = color_error(&picture, &reference);
         ensure(found <= f64::from(max_error), || {
             format!("{found:.1e} instead of {max_error:.0e}: {choice:?}")
         })?;
@@ -165,18 +165,6 @@ fn keeps_its_promise(program: &Program, fine: f32, least: f32) -> Result<(), Fai
         ensure(off <= 1e-3 * estimate, || format!("errors of pixels are off by {off:.1e}"))?;
     }
     Ok(())
-}
-
-/// Root mean square of the difference over that of the second.
-fn error(a: &Image, b: &Image) -> f64 {
-    let squares = |a: &Image, b: Option<&Image>| -> f64 {
-        let pixels = a.pixels.iter().enumerate().flat_map(|(i, pixel)| {
-            (0..3)
-                .map(move |c| f64::from(pixel.color[c]) - b.map_or(0.0, |b| f64::from(b.pixels[i].color[c])))
-        });
-        pixels.map(|x| x * x).sum()
-    };
-    (squares(a, Some(b)) / squares(b, None)).sqrt()
 }
 
 /// Root mean square of the pixels' errors over that of the colours.
@@ -207,8 +195,7 @@ fn rounds_well(program: &Program) -> Result<(), Failed> {
             (a.color, b.color) = ([0.0; 3], [0.0; 3]);
         }
     }
-    let found = error(&actual, &expected);
-    println!("rounding {found:.1e}, {flipped} pixels see another surface");
+    let found = color_error(&actual, &expected);
     ensure(flipped <= 2, || format!("{flipped} pixels see another surface"))?;
     ensure(found < 7e-5, || format!("f32 is off by {found:.1e}"))
 }

@@ -3,6 +3,7 @@
 use crate::support::{compile, ensure, frame};
 use libtest_mimic::{Failed, Trial};
 use std::sync::atomic::AtomicBool;
+use vol::compare::color_error;
 use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 use vol_runtime_cpu::{Method, TubeBounds, render_by};
 
@@ -39,13 +40,6 @@ fn fixed(tube_bounds: TubeBounds) -> Method {
 
 fn colors(image: &Image) -> Vec<f64> {
     image.pixels.iter().flat_map(|pixel| pixel.color).map(f64::from).collect()
-}
-
-/// Root mean square of the difference, relative to that of `expected`.
-fn relative_error(found: &Image, expected: &Image) -> f64 {
-    let (found, expected) = (colors(found), colors(expected));
-    let squares: f64 = found.iter().zip(&expected).map(|(a, b)| (a - b).powi(2)).sum();
-    (squares / expected.iter().map(|b| b * b).sum::<f64>()).sqrt()
 }
 
 const CAMERA: &str =
@@ -125,7 +119,7 @@ fn even_tubes() -> Result<(), Failed> {
         let scene = tube("0.3", caps);
         let expected = render(&scene, Method::Comb, &job(0.005, 1))?.0;
         for bounds in [TubeBounds::Cells, TubeBounds::SphereMarch] {
-            let error = relative_error(&render(&scene, fixed(bounds), &job(0.01, 1))?.0, &expected);
+            let error = color_error(&render(&scene, fixed(bounds), &job(0.01, 1))?.0, &expected);
             ensure(error < 3e-2, || format!("{caps}, {bounds:?}: {error}"))?;
         }
     }
@@ -137,9 +131,8 @@ fn even_tubes() -> Result<(), Failed> {
 fn steep_tubes() -> Result<(), Failed> {
     let scene = tube("t => 0.22 + 0.2 * cos(40 * t)", "round");
     let expected = render(&scene, Method::Comb, &job(0.005, 1))?.0;
-    let by = |bounds| {
-        Ok::<_, Failed>(relative_error(&render(&scene, fixed(bounds), &job(0.005, 1))?.0, &expected))
-    };
+    let by =
+        |bounds| Ok::<_, Failed>(color_error(&render(&scene, fixed(bounds), &job(0.005, 1))?.0, &expected));
     let (cells, marched) = (by(TubeBounds::Cells)?, by(TubeBounds::SphereMarch)?);
     ensure(cells < 2e-2 && marched > 2.0 * cells, || format!("{cells} and {marched}"))
 }
@@ -151,7 +144,7 @@ fn cloud_ball() -> Result<(), Failed> {
     let error = |method, step| {
         let (image, stats) = render(&scene, method, &job(step, 1))?;
         let samples = stats.medium_samples + stats.shadow_samples;
-        Ok::<_, Failed>((relative_error(&image, &converged), samples))
+        Ok::<_, Failed>((color_error(&image, &converged), samples))
     };
     let (coarse, _) = error(fixed(TubeBounds::Cells), 0.04)?;
     let (fine, samples) = error(fixed(TubeBounds::Cells), 0.01)?;

@@ -7,7 +7,6 @@ use crate::solid::along;
 use crate::support::{Random, compile, compile_with_messages, ensure, frame, on_both};
 use libtest_mimic::{Failed, Trial};
 use std::f64::consts::{PI, TAU};
-use std::time::Instant;
 use vol::backend::Device;
 use vol_compiler::curve::Quadratic;
 use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
@@ -336,13 +335,8 @@ fn long_path(segments: usize) -> String {
 }
 
 fn ten_thousand_segments() -> Result<(), Failed> {
-    let start = Instant::now();
     let program = compile("long.vol", &long_path(10_000))?;
-    let compiled = start.elapsed();
-    let start = Instant::now();
     let frame = frame(&program, 0.0, [4, 4])?;
-    let framed = start.elapsed();
-    println!("compiled in {compiled:?}, framed in {framed:?}");
     let segments = &frame.curves[0];
     ensure(segments.len() == 10_000, || format!("{} segments", segments.len()))?;
     let scene = Compiled { program, frame };

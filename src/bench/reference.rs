@@ -18,7 +18,7 @@ use crate::failure::Failure;
 use crate::output::atomic;
 
 /// Part of the key: raised whenever the integrator means something else.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Converged radiance at some places of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -40,7 +40,7 @@ use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
-const INTEGRATOR: [&str; 15] = [
+const INTEGRATOR: [&str; 16] = [
     include_str!("render.wgsl"),
     include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
@@ -52,6 +52,7 @@ const INTEGRATOR: [&str; 15] = [
     include_str!("render/penumbra.wgsl"),
     include_str!("render/occlusion.wgsl"),
     include_str!("render/comb.wgsl"),
+    include_str!("render/chord.wgsl"),
     include_str!("render/panel.wgsl"),
     include_str!("render/scatter.wgsl"),
     include_str!("render/corrected.wgsl"),

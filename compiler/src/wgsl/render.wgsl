@@ -108,16 +108,16 @@ fn render(@builtin(global_invocation_id) id: vec3u) {
     let column = tile.x + id.x;
     let row = tile.y + id.y;
     let index = (row * u32(vol_input[AT_SIZE])) + column;
-    let pixel = vec2f(f32(column), f32(row));
+    let pixel = vec2u(column, row);
     // Go on with the pixel where the dispatch before stopped.
     var mean = read_pixel(index);
     let last = min(mean.count + u32(vol_input[AT_BUDGET]), u32(vol_input[AT_SAMPLES]));
     while ((mean.count < last) && !is_done(mean)) {
-        mean = add_sample(mean, radiance(camera_ray(pixel + place_in_pixel(mean.count))));
+        mean = add_sample(mean, radiance(sample_ray(pixel, mean.count)));
         if (is_probed() && (mean.count == FIRST_ROUND)) {
             for (var corner = 0u; corner < 4u; corner++) {
-                let place = pixel + vec2f(f32(corner % 2u), f32(corner / 2u));
-                mean = add_probe(mean, radiance(camera_ray(place)));
+                let place = pixel + vec2u(corner % 2u, corner / 2u);
+                mean = add_probe(mean, radiance(camera_ray(vec2f(place))));
             }
         }
     }

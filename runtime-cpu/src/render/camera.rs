@@ -13,16 +13,23 @@ pub(crate) const FAR: f32 = 4.0e6;
 /// A direction component below this is 0 for a box: over [`FAR`] it moves a point by 4e-6.
 pub(super) const PARALLEL: f32 = 1e-12;
 
-/// Half a line, from an origin along a unit direction.
+/// Half a line, from an origin along a unit direction, and how its samples of media lie.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ray<R> {
     /// Where it starts.
     pub(crate) origin: Vec3<R>,
     /// Unit direction.
     pub(crate) direction: Vec3<R>,
+    /// How far its comb is moved along it: -1/2..1/2, in steps.
+    pub(crate) shift: R,
 }
 
 impl<R: Real> Ray<R> {
+    /// With its comb where it is usually.
+    pub(crate) fn new(origin: Vec3<R>, direction: Vec3<R>) -> Self {
+        Self { origin, direction, shift: R::ZERO }
+    }
+
     /// The point at a distance from the origin.
     pub(crate) fn at(&self, t: R) -> Vec3<R> {
         add(self.origin, scale(self.direction, t))
@@ -59,7 +66,7 @@ pub(crate) fn camera_ray<R: Real>(scene: &Scene<R>, place: [R; 2]) -> Ray<R> {
     let v = R::ONE - (two * place[1]) / scene.size[1];
     let toward = add(add(camera.forward, scale(camera.right, u)), scale(camera.up, v));
     let size = length(toward);
-    Ray { origin: camera.origin, direction: toward.map(|component| component / size) }
+    Ray::new(camera.origin, toward.map(|component| component / size))
 }
 
 /// Part of a ray inside a box; a box without volume may give nothing.
@@ -97,7 +104,7 @@ mod tests {
     use super::*;
 
     fn ray(origin: [f32; 3], direction: [f32; 3]) -> Ray<f32> {
-        Ray { origin, direction }
+        Ray::new(origin, direction)
     }
 
     #[test]

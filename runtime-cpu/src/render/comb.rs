@@ -1,8 +1,9 @@
 //! The samples of media along a ray, and the length of ray that each stands for.
 //!
-//! One comb per ray: node `i` is at `(i + 1/2) step` from the ray's origin, whatever the ray
-//! enters or leaves, so that skipping empty parts changes no sum; for [`super::panel`] at `i step`. What
-//! follows is of the midpoint form. Between two neighbouring nodes
+//! One comb per ray: node `i` is at `(i + 1/2 + shift) step` from the ray's origin, whatever the ray
+//! enters or leaves, so that skipping empty parts changes no sum; for [`super::panel`] at `(i + shift) step`, the
+//! first one at the origin. The shift is the ray's own: with one for all pixels what is left of
+//! the error would be rings and bands. What follows is of the midpoint form. Between two neighbouring nodes
 //! of which both are inside a medium, each gets half of the interval; if only one is inside, the
 //! wall is where the signed distances say, and that node gets all up to the wall. This is second
 //! order at hard walls, at the ray's origin and at its end. Parts between two outside nodes are
@@ -62,8 +63,8 @@ pub(crate) struct Cursor {
 /// The combs of a batch of rays.
 pub(crate) struct Combs<'a, R> {
     pub(super) step: R,
-    /// Where node 0 is, in steps.
-    offset: R,
+    /// Where node 0 of each ray is, in steps.
+    offsets: Vec<R>,
     pub(super) ends: &'a [R],
     /// Nodes that may be inside, per medium and ray; of panels the first node of each.
     pub(super) ranges: Vec<Vec<NodeRange>>,
@@ -73,8 +74,8 @@ pub(crate) struct Combs<'a, R> {
 
 impl<R: Real> Combs<'_, R> {
     /// Distance of a node from the origin of its ray.
-    pub(crate) fn distance(&self, node: i32) -> R {
-        node_distance(node, self.step, self.offset)
+    pub(crate) fn distance(&self, ray: usize, node: i32) -> R {
+        node_distance(node, self.step, self.offsets[ray])
     }
 
     /// The rays that have nodes, at their first one.
@@ -95,6 +96,15 @@ pub(crate) struct Inside<R> {
     pub(crate) points: Points<R>,
 }
 
+/// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
+fn first_node<R: Real>(quadrature: Quadrature, shift: R) -> R {
+    match quadrature {
+        Quadrature::Midpoint => R::from_f32(0.5) + shift,
+        Quadrature::Corrected if shift > R::ZERO => shift - R::ONE,
+        Quadrature::Corrected => shift,
+    }
+}
+
 /// Distance of a node from the origin of the ray.
 fn node_distance<R: Real>(node: i32, step: R, offset: R) -> R {
     (R::from_index(node) + offset) * step
@@ -112,7 +122,7 @@ fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end
     // Node numbers stay where f32 knows them and a half.
     let most = R::from_f32(4_194_304.0);
     let first = (span.entry / step - offset).floor().max(R::ZERO).min(most);
-    let last = (exit / step).floor().min(most);
+    let last = (exit / step - offset).floor().min(most);
     NodeRange { first: first.to_index(), last: last.to_index() }
 }
 
@@ -130,22 +140,20 @@ impl<F: Fields> Integrator<'_, F> {
         ends: &'a [F::Real],
         step: F::Real,
     ) -> Combs<'a, F::Real> {
-        let offset = match self.scene.quadrature {
-            Quadrature::Midpoint => F::Real::from_f32(0.5),
-            Quadrature::Corrected => F::Real::ZERO,
-        };
+        let offset = |ray: &Ray<F::Real>| first_node(self.scene.quadrature, ray.shift);
+        let offsets: Vec<F::Real> = rays.iter().map(offset).collect();
         let mut whole = vec![NodeRange::NONE; rays.len()];
         let mut ranges = Vec::with_capacity(self.scene.media.len());
         for medium in &self.scene.media {
-            let range = |(ray, &end)| node_range(ray, medium, step, offset, end);
-            let own: Vec<NodeRange> = rays.iter().zip(ends).map(range).collect();
+            let range = |((ray, &offset), &end)| node_range(ray, medium, step, offset, end);
+            let own: Vec<NodeRange> = rays.iter().zip(&offsets).zip(ends).map(range).collect();
             whole.iter_mut().zip(&own).for_each(|(whole, &own)| *whole = whole.union(own));
             ranges.push(own);
         }
         for range in &mut whole {
             range.last = range.last.min(range.first + MAX_NODES - 1);
         }
-        Combs { step, offset, ends, ranges, whole }
+        Combs { step, offsets, ends, ranges, whole }
     }
 
     /// Signed distances of one medium's region; [`FAR`] where neither the point nor one within a step
@@ -190,7 +198,7 @@ impl<F: Fields> Integrator<'_, F> {
             if first <= last {
                 runs.push((which, first, last, points.len()));
                 let nodes = first - 1..=last + 1;
-                nodes.for_each(|node| points.push(rays[cursor.ray].at(combs.distance(node))));
+                nodes.for_each(|node| points.push(rays[cursor.ray].at(combs.distance(cursor.ray, node))));
             }
         }
         let region = self.region(medium, &points, combs.step);
@@ -199,7 +207,7 @@ impl<F: Fields> Integrator<'_, F> {
         for (which, first, last, offset) in runs {
             let cursor = active[which];
             let wall = |node: i32| {
-                let t = combs.distance(node);
+                let t = combs.distance(cursor.ray, node);
                 let index = offset + (node - (first - 1)) as usize;
                 region[index].max((t - combs.ends[cursor.ray]).max(-t))
             };

@@ -195,12 +195,12 @@ fn ray(table: &LightGrid, index: u32) -> Ray<f32> {
     let (x, y) = (along(0, index / table.counts[1]), along(1, index % table.counts[1]));
     let across = add(scale(u, x), scale(v, y));
     if table.distant {
-        return Ray { origin: add(table.origin, add(across, scale(w, table.lo[2]))), direction: w };
+        return Ray::new(add(table.origin, add(across, scale(w, table.lo[2]))), w);
     }
     let toward = add(w, across);
     let size = length(toward);
     let direction = toward.map(|component| component / size);
-    Ray { origin: add(table.origin, scale(direction, table.lo[2])), direction }
+    Ray::new(add(table.origin, scale(direction, table.lo[2])), direction)
 }
 
 /// Largest difference of two channels, relative to their sum, that rounding of the sums may make.

@@ -160,7 +160,7 @@ impl<F: Fields> Integrator<'_, F> {
         asked.dedup();
         let shadow_ray = |&index: &usize| {
             let (place, lamp) = (&places[index], &lamps[index]);
-            let ray = Ray { origin: place.point, direction: lamp.direction };
+            let ray = Ray::new(place.point, lamp.direction);
             ShadowRay::new(ray, lamp.distance.min(F::Real::from_f32(FAR)), shadow_bias(self.scene, place.t))
         };
         let rays: Vec<_> = asked.iter().map(shadow_ray).collect();

@@ -146,7 +146,8 @@ impl<F: Fields> Integrator<'_, F> {
             let mass = values[0][i].max(F::Real::ZERO) * weight;
             chunk.depth[slot] = add(chunk.depth[slot], scale(color(4, i), mass));
             let (which, node) = (slot / nodes, slot % nodes);
-            let t = combs.distance(active[which].node + node as i32);
+            let cursor = active[which];
+            let t = combs.distance(cursor.ray, cursor.node + node as i32);
             places.push(Place { which, node: Some(node), t });
             scatter.push(scale(color(1, i), mass));
             source.push(scale(color(7, i), mass));

@@ -1,7 +1,7 @@
 //! The panels of the corrected form: stretches of a ray between two places at which a medium is
 //! sampled, and how much matter is in each.
 //!
-//! Places are the nodes of the comb inside the medium, at `i step`, the end of the ray, and the walls
+//! Places are the nodes of the comb inside the medium, the origin and the end of the ray, and the walls
 //! that lie between two nodes, found by false position. In a panel the density is taken to be linear:
 //! trapezoid. Where it changes its sign, from p > 0 to m < 0, the positive part of the line is
 //! integrated and the error of the trapezoids before it made good (algorithms.md §5.1):
@@ -13,11 +13,13 @@
 //! densities of the last panel. Error: the third power of the step; where less than a quarter of a panel is
 //! left beside a wall, some of the second power.
 //!
-//! Parts between two outside nodes are lost, as in [`super::comb`].
+//! Between two nodes outside, a ray may pass through a corner: [`super::chord`] looks for that. What is thinner
+//! than a step and far from both nodes, and gaps between two nodes inside, are lost, as in [`super::comb`].
 //!
 //! Twin: `compiler/src/wgsl/render/panel.wgsl`.
 
 use super::camera::Ray;
+use super::chord::Gap;
 use super::comb::{Combs, Cursor};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
@@ -25,8 +27,8 @@ use super::scene::Integrator;
 use crate::real::{Real, Vec3, add, scale};
 use vol_compiler::ir::FunctionId;
 
-/// Rounds of false position by which a wall is found.
-pub(crate) const WALL_ROUNDS: u32 = 3;
+/// Rounds by which a wall is found.
+pub(crate) const WALL_ROUNDS: u32 = 5;
 
 /// A stretch of a ray inside a medium.
 #[derive(Clone, Copy, Debug)]
@@ -79,22 +81,40 @@ type Found<R> = (Vec<Place<R>>, Vec<Stretch>, Vec<Crossing<R>>);
 
 /// Two neighbouring nodes of which one is inside: distance along the ray and signed distance of each.
 #[derive(Clone, Copy, Debug)]
-struct Crossing<R> {
-    which: usize,
-    inside: [R; 2],
-    outside: [R; 2],
+pub(super) struct Crossing<R> {
+    pub(super) which: usize,
+    pub(super) inside: [R; 2],
+    pub(super) outside: [R; 2],
+    /// Which of them was found last, if any.
+    moved: Option<bool>,
 }
 
 impl<R: Real> Crossing<R> {
+    pub(super) fn new(which: usize, inside: [R; 2], outside: [R; 2]) -> Self {
+        Self { which, inside, outside, moved: None }
+    }
+
     /// Where the signed distance would be 0 if it were linear between the two.
     fn probe(&self) -> R {
         let ([t, value], [other_t, other_value]) = (self.inside, self.outside);
         t + (other_t - t) * (value / (value - other_value))
     }
 
-    /// Takes the signed distance at the probe into account.
+    /// Takes the signed distance at the probe into account. An end that stays twice counts half (the Illinois
+    /// rule), else it would stay for ever where the distance bends.
     fn narrow(&mut self, t: R, value: R) {
-        *(if value < R::ZERO { &mut self.inside } else { &mut self.outside }) = [t, value];
+        let half = R::from_f32(0.5);
+        let enters = value < R::ZERO;
+        let (replaced, kept) = if enters {
+            (&mut self.inside, &mut self.outside)
+        } else {
+            (&mut self.outside, &mut self.inside)
+        };
+        *replaced = [t, value];
+        if self.moved == Some(enters) {
+            kept[1] = half * kept[1];
+        }
+        self.moved = Some(enters);
     }
 }
 
@@ -167,7 +187,8 @@ impl<F: Fields> Integrator<'_, F> {
             if first <= last {
                 runs.push((which, first, last, nodes.len()));
                 for node in first..=last + 1 {
-                    let t = combs.distance(node).min(combs.ends[cursor.ray]);
+                    let t = combs.distance(cursor.ray, node);
+                    let t = t.max(F::Real::ZERO).min(combs.ends[cursor.ray]);
                     let place = Place { which, node: Some((node - cursor.node) as usize), t };
                     nodes.push(place);
                     points.push(rays[cursor.ray].at(t));
@@ -184,29 +205,39 @@ impl<F: Fields> Integrator<'_, F> {
         }
         // Between two of them is a stretch; a wall ends it where one is outside.
         let (mut stretches, mut crossings) = (Vec::new(), Vec::new());
+        let mut gaps = Vec::new();
         for (which, first, last, offset) in runs {
             for node in first..=last {
                 let index = offset + (node - first) as usize;
                 let ends = [index, index + 1];
                 let inside = ends.map(|end| region[end] < F::Real::ZERO);
-                if nodes[ends[0]].t >= nodes[ends[1]].t || inside == [false, false] {
+                if nodes[ends[0]].t >= nodes[ends[1]].t {
+                    continue;
+                }
+                let slot = which * self.batches.nodes as usize + (node - active[which].node) as usize;
+                let [from, to] = ends.map(|end| [nodes[end].t, region[end]]);
+                if inside == [false, false] {
+                    gaps.extend(Gap::new(which, slot, from, to));
                     continue;
                 }
                 let wall = places.len() + crossings.len();
-                let slot = which * self.batches.nodes as usize + (node - active[which].node) as usize;
-                let is_last = nodes[ends[1]].t < combs.distance(node + 1);
+                let is_last = nodes[ends[1]].t < combs.distance(active[which].ray, node + 1);
                 stretches.push(Stretch {
                     slot,
                     ends: [0, 1].map(|i| if inside[i] { place_of[ends[i]] } else { wall }),
                     open: [!inside[0] || node == 0, !inside[1] || is_last],
                 });
-                let [from, to] = ends.map(|end| [nodes[end].t, region[end]]);
                 match inside {
-                    [true, false] => crossings.push(Crossing { which, inside: from, outside: to }),
-                    [false, true] => crossings.push(Crossing { which, inside: to, outside: from }),
+                    [true, false] => crossings.push(Crossing::new(which, from, to)),
+                    [false, true] => crossings.push(Crossing::new(which, to, from)),
                     _ => {}
                 }
             }
+        }
+        for chord in self.chords(medium, rays, active, gaps) {
+            let wall = places.len() + crossings.len();
+            stretches.push(Stretch { slot: chord.slot, ends: [wall, wall + 1], open: [true, true] });
+            crossings.extend(chord.walls);
         }
         (places, stretches, crossings)
     }
@@ -294,7 +325,7 @@ mod tests {
     fn a_wall_is_found() {
         // Through a ball of radius 1: the distance is not linear.
         let distance = |t: f64| (t * t + 0.3_f64.powi(2)).sqrt() - 1.0;
-        let mut crossing = Crossing { which: 0, inside: [0.8, distance(0.8)], outside: [1.1, distance(1.1)] };
+        let mut crossing = Crossing::new(0, [0.8, distance(0.8)], [1.1, distance(1.1)]);
         for _ in 0..WALL_ROUNDS {
             let t = crossing.probe();
             crossing.narrow(t, distance(t));

@@ -281,7 +281,7 @@ fn rim<R: Real>(cone: &Cone<R>) -> [Cone<R>; 8] {
         let aside = add(scale(right, R::from_f32(x)), scale(up, R::from_f32(y)));
         let toward = add(direction, scale(aside, cone.slope));
         let size = length(toward);
-        let ray = Ray { origin: cone.shadow.ray.origin, direction: toward.map(|c| c / size) };
+        let ray = Ray::new(cone.shadow.ray.origin, toward.map(|c| c / size));
         Cone { shadow: ShadowRay { ray, ..cone.shadow }, ..*cone }
     })
 }

@@ -16,9 +16,10 @@
 //! round that would cost more than the picture deserves is stopped and not used.
 
 use super::Stats;
-use super::camera::{Ray, camera_ray, slab};
+use super::camera::{Ray, slab};
 use super::fields::Batch;
 use super::film::Radiance;
+use super::sampling::sample_ray;
 use super::scene::{Batches, Integrator, Purse, Scene};
 use super::survey;
 use crate::interp::Tapes;
@@ -183,7 +184,7 @@ impl<'a> Pilot<'a> {
         );
         let places = pixels(size);
         let count = places.len();
-        let rays = places.map(|place| camera_ray(&scene, place));
+        let rays = places.map(|pixel| sample_ray(&scene, pixel, 0));
         let (mut meeting, mut others): (Vec<_>, Vec<_>) = rays.partition(|ray| meets_media(&scene, ray));
         let portions = [meeting.len(), others.len()].map(|part| part as f64 / count as f64);
         meeting.truncate(RAYS);
@@ -323,9 +324,9 @@ fn between(step: f32, error: f32, before: Option<f32>, max_error: f32) -> (f32, 
     (ratio * step, exp2(power * log2(ratio)) * error)
 }
 
-/// Centres of pixels all over the picture, in an order of which every beginning is spread evenly: of a
+/// Pixels all over the picture, in an order of which every beginning is spread evenly: of a
 /// large picture multiples of the powers of the plastic number, of a small one all pixels, shuffled.
-fn pixels([width, height]: [u32; 2]) -> impl ExactSizeIterator<Item = [f32; 2]> {
+fn pixels([width, height]: [u32; 2]) -> impl ExactSizeIterator<Item = [u32; 2]> {
     let count = width.saturating_mul(height);
     let mut order: Vec<u32> = (0..count.min(CANDIDATES)).collect();
     if count <= CANDIDATES {
@@ -333,11 +334,11 @@ fn pixels([width, height]: [u32; 2]) -> impl ExactSizeIterator<Item = [f32; 2]> 
     }
     order.into_iter().map(move |index| {
         if count <= CANDIDATES {
-            return [index % width, index / width].map(|pixel| pixel as f32 + 0.5);
+            return [index % width, index / width];
         }
         let along = |ratio: f64, length: u32| {
             let place = (0.5 + f64::from(index + 1) * ratio).fract() * f64::from(length);
-            place.floor() as f32 + 0.5
+            place as u32
         };
         [along(0.754_877_666_246_692_8, width), along(0.569_840_290_998_053_2, height)]
     })

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     fn ray(x: f32) -> Ray<f32> {
-        Ray { origin: [0.0; 3], direction: [x, 0.0, 1.0] }
+        Ray::new([0.0; 3], [x, 0.0, 1.0])
     }
 
     #[test]

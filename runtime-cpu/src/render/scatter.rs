@@ -121,7 +121,7 @@ impl<F: Fields> Integrator<'_, F> {
                 if asked.is_none() {
                     let origin = filling.points.get(index);
                     let lamp = arriving(light, origin);
-                    let ray = Ray { origin, direction: lamp.direction };
+                    let ray = Ray::new(origin, lamp.direction);
                     shadow_rays.push(ShadowRay::new(ray, lamp.distance, shadow_bias(self.scene, place.t)));
                 }
                 if let Some(node) = node {

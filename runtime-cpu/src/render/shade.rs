@@ -163,11 +163,7 @@ impl<F: Fields> Integrator<'_, F> {
             let bias = shadow_bias(scene, contact.t);
             let offset = bias.max(F::Real::from_f32(2.0) * contact.residual);
             let origin = add(contact.position, scale(contact.normal, offset));
-            ShadowRay::new(
-                Ray { origin, direction: facing.arriving.direction },
-                facing.arriving.distance,
-                bias,
-            )
+            ShadowRay::new(Ray::new(origin, facing.arriving.direction), facing.arriving.distance, bias)
         };
         let rays: Vec<_> = facing.iter().map(shadow_ray).collect();
         if light.size > F::Real::ZERO {

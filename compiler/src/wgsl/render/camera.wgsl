@@ -4,6 +4,13 @@
 struct Ray {
     origin: vec3f,
     direction: vec3f,
+    // How far its comb is moved along it: -1/2..1/2, in steps.
+    shift: f32,
+}
+
+// With its comb where it is usually.
+fn new_ray(origin: vec3f, direction: vec3f) -> Ray {
+    return Ray(origin, direction, 0.0);
 }
 
 struct Span {
@@ -20,7 +27,7 @@ fn camera_ray(place: vec2f) -> Ray {
     let v = 1.0 - ((2.0 * place.y) / vol_input[AT_SIZE + 1u]);
     let sideways = word3(AT_FORWARD) + (word3(AT_RIGHT) * u);
     let toward = sideways + (word3(AT_UP) * v);
-    return Ray(word3(AT_EYE), toward / length3(toward));
+    return new_ray(word3(AT_EYE), toward / length3(toward));
 }
 
 // Part of a ray inside a box.

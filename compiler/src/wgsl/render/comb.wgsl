@@ -3,6 +3,8 @@
 
 struct Comb {
     step: f32,
+    // Where node 0 is, in steps.
+    offset: f32,
     end: f32,
     // Nodes that may be inside some medium.
     first: i32,
@@ -12,6 +14,11 @@ struct Comb {
     // Signed distances of each medium at the node before and at the next one.
     before: array<f32, MEDIUM_SLOTS>,
     own: array<f32, MEDIUM_SLOTS>,
+}
+
+// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
+fn first_node(shift: f32) -> f32 {
+    return select(0.5 + shift, select(shift, shift - 1.0, shift > 0.0), CORRECTED);
 }
 
 fn node_distance(node: i32, step_size: f32, offset: f32) -> f32 {
@@ -31,7 +38,7 @@ fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> v
     let leave = min(span.leave, end);
     // Node numbers stay where f32 knows them and a half.
     let first = min(max(floor((span.entry / step_size) - offset), 0.0), 4194304.0);
-    let last = min(floor(max(leave, 0.0) / step_size), 4194304.0);
+    let last = min(floor((max(leave, 0.0) / step_size) - offset), 4194304.0);
     let none = (span.entry > leave) | (vol_input[at] == 0.0);
     return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
 }
@@ -47,7 +54,8 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
     comb.end = end;
-    let offset = select(0.5, 0.0, CORRECTED);
+    let offset = first_node(ray.shift);
+    comb.offset = offset;
     var whole = vec2i(0, -1);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let range = node_range(ray, medium, step_size, offset, end);
@@ -63,10 +71,9 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     return comb;
 }
 
-// Signed distance of a node from the nearest of: the medium's wall, the ray's two ends.
-fn wall(ray: Ray, medium: u32, range: vec2i, node: i32, step_size: f32, end: f32) -> f32 {
+// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
+fn wall(ray: Ray, medium: u32, range: vec2i, t: f32, node: i32, step_size: f32, end: f32) -> f32 {
     var region = FAR;
-    let t = node_distance(node, step_size, 0.5);
     let some = range.x <= range.y;
     if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
         let point = ray_at(ray, t);
@@ -108,10 +115,11 @@ fn share(own: f32, other: f32, step_size: f32) -> f32 {
 fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
     var any_inside = false;
     let step_size = (*comb).step;
+    let t = node_distance(node + 1, step_size, (*comb).offset);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let before = (*comb).before[medium];
         let own = (*comb).own[medium];
-        let after = wall(ray, medium, (*comb).ranges[medium], node + 1, step_size, (*comb).end);
+        let after = wall(ray, medium, (*comb).ranges[medium], t, node + 1, step_size, (*comb).end);
         let weight = share(own, before, step_size) + share(own, after, step_size);
         let is_inside = (own < 0.0) & (node >= (*comb).first);
         (*weights)[medium] = select(0.0, weight, is_inside);

@@ -1,13 +1,14 @@
 // What media along a ray add and take away, by panel.wgsl.
 // Twin: runtime-cpu/src/render/corrected.rs, which says why.
 
-// Ends of panels: the node before, the node after, a wall between them.
+// Ends of panels: the node before, the node after, the walls between them.
 const BEFORE: u32 = 0u;
 const AFTER: u32 = 1u;
 const WALL: u32 = 2u;
+const MOST_WALLS: u32 = 2u;
 const THIN: f32 = 0.125;
 const THICK: f32 = 0.5;
-const END_SLOTS: u32 = 3u * MEDIUM_SLOTS;
+const END_SLOTS: u32 = (WALL + MOST_WALLS) * MEDIUM_SLOTS;
 
 // The panels between two nodes.
 struct Panels {
@@ -16,7 +17,7 @@ struct Panels {
     // Light sent towards the eye there, per unit of density.
     sources: array<vec3f, END_SLOTS>,
     // Distances of the walls.
-    walls: array<f32, MEDIUM_SLOTS>,
+    walls: array<vec2f, MEDIUM_SLOTS>,
     // Kinds of the two ends of each medium's panel.
     ends: array<vec2u, MEDIUM_SLOTS>,
     // Integral of the density that each end stands for.
@@ -34,7 +35,7 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
     panels.lit = false;
     // The panel before the first one is nothing: its end is the beginning of the first.
     for (var node = comb.first - 1; node <= comb.last; node++) {
-        let t = vec2f(panel_node(node, comb.step, end), panel_node(node + 1, comb.step, end));
+        let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
@@ -60,8 +61,8 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
     (*panels).some = false;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let own = (*comb).own[medium];
-        let next = panel_region(ray, medium, (*comb).ranges[medium], node + 1, t.y, (*comb).step);
-        (*comb).own[medium] = next;
+        let between = find_walls(ray, medium, comb, node, t);
+        let next = between.next;
         let at = (AFTER * MEDIUM_SLOTS) + medium;
         (*panels).interiors[at] = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
         if (next < 0.0) {
@@ -69,21 +70,24 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
         }
         var masses = vec2f(0.0);
         var ends = vec2u(BEFORE, AFTER);
-        if ((node >= (*comb).first) & (t.x < t.y) & ((own < 0.0) | (next < 0.0))) {
+        if (has_panel(comb, node, t, own, between)) {
             var stretch = t;
-            if ((own < 0.0) != (next < 0.0)) {
-                let leaves = own < 0.0;
-                let start = vec2f(t.x, own);
-                let stop = vec2f(t.y, next);
-                let wall = find_wall(ray, medium, select(stop, start, leaves), select(start, stop, leaves));
-                (*panels).interiors[(WALL * MEDIUM_SLOTS) + medium] = medium_interior(medium, ray_at(ray, wall));
-                (*panels).walls[medium] = wall;
-                ends = select(vec2u(WALL, AFTER), vec2u(BEFORE, WALL), leaves);
-                stretch = select(vec2f(wall, t.y), vec2f(t.x, wall), leaves);
+            (*panels).walls[medium] = between.walls;
+            for (var wall = 0u; wall < between.count; wall++) {
+                let kind = WALL + wall;
+                let interior = medium_interior(medium, ray_at(ray, between.walls[wall]));
+                (*panels).interiors[(kind * MEDIUM_SLOTS) + medium] = interior;
+                if (wall_ends(own, wall)) {
+                    ends.y = kind;
+                    stretch.y = between.walls[wall];
+                } else {
+                    ends.x = kind;
+                    stretch.x = between.walls[wall];
+                }
             }
             let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
             let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
-            let open = open_ends(node, t, own, next, (*comb).step);
+            let open = open_ends(comb, node, t, own, next);
             masses = panel_masses((*comb).step, stretch.y - stretch.x, vec2f(first.density, last.density), open);
             (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
         }
@@ -96,32 +100,35 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
 // Lights the ends of panels with matter; whether those at the node after are among them.
 fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
     var lit_after = false;
-    for (var place = 0u; place < (WALL + MEDIUM_COUNT); place++) {
-        let kind = min(place, WALL);
+    for (var place = 0u; place < (WALL + (MOST_WALLS * MEDIUM_COUNT)); place++) {
+        // Media share nodes; each has walls of its own.
+        let is_wall = place >= WALL;
+        let wall = (max(place, WALL) - WALL) % MOST_WALLS;
+        let owner = (max(place, WALL) - WALL) / MOST_WALLS;
+        let kind = select(place, WALL + wall, is_wall);
         var distance = select(t.y, t.x, kind == BEFORE);
         var wanted = false;
         var scatter: array<vec3f, MEDIUM_SLOTS>;
         var source: array<vec3f, MEDIUM_SLOTS>;
         for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-            // Media share nodes; each has a wall of its own.
             let ends = (*panels).ends[medium];
-            let own = (kind != WALL) | (medium == (place - WALL));
+            let own = !is_wall | (medium == owner);
             let asks = own & any(ends == vec2u(kind)) & any((*panels).masses[medium] > vec2f(0.0));
             wanted = wanted | asks;
             scatter[medium] = vec3f(0.0);
             source[medium] = vec3f(0.0);
-            if ((kind != WALL) | asks) {
+            if (!is_wall | asks) {
                 let interior = (*panels).interiors[(kind * MEDIUM_SLOTS) + medium];
                 scatter[medium] = interior.scattering;
                 source[medium] = interior.emission;
-                distance = select(distance, (*panels).walls[medium], kind == WALL);
+                distance = select(distance, (*panels).walls[medium][wall], is_wall);
             }
         }
         if (wanted & !((kind == BEFORE) & (*panels).lit)) {
             light_place(ray, distance, &scatter, &source);
             lit_after = lit_after | (kind == AFTER);
             for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-                if ((kind != WALL) | (medium == (place - WALL))) {
+                if (!is_wall | (medium == owner)) {
                     (*panels).sources[(kind * MEDIUM_SLOTS) + medium] = source[medium];
                 }
             }

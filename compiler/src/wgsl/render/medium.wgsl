@@ -35,7 +35,7 @@ fn march_nodes(ray: Ray, end: f32) -> Glow {
     var weights: array<f32, MEDIUM_SLOTS>;
     for (var node = comb.first - 2; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {
-            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, 0.5), &weights));
+            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &weights));
         }
         // Go on while the ray still lets light through.
         if (largest(glow.transmittance) < STOP) {

@@ -2,48 +2,139 @@
 // sampled, and how much matter is in each.
 // Twin: runtime-cpu/src/render/panel.rs, which says why.
 
-const WALL_ROUNDS: u32 = 3u;
+const WALL_ROUNDS: u32 = 5u;
 
-// Distance of a node from the origin of its ray; all behind the end are at the end.
-fn panel_node(node: i32, step_size: f32, end: f32) -> f32 {
-    return min(node_distance(node, step_size, 0.0), end);
+// Distance of a node from the origin of its ray: at least there, and at most at the end.
+fn panel_node(comb: ptr<function, Comb>, node: i32) -> f32 {
+    return min(max(node_distance(node, (*comb).step, (*comb).offset), 0.0), (*comb).end);
 }
 
 // Whether matter is cut off at each end of a panel after a node: at a wall, or at an end of the ray.
-fn open_ends(node: i32, t: vec2f, own: f32, next: f32, step_size: f32) -> vec2<bool> {
-    let is_last = t.y < node_distance(node + 1, step_size, 0.0);
+fn open_ends(comb: ptr<function, Comb>, node: i32, t: vec2f, own: f32, next: f32) -> vec2<bool> {
+    let is_last = t.y < node_distance(node + 1, (*comb).step, (*comb).offset);
     return vec2<bool>((own >= 0.0) | (node == 0), (next >= 0.0) | is_last);
 }
 
-// Signed distance of a medium's region at a node.
-fn panel_region(ray: Ray, medium: u32, range: vec2i, node: i32, t: f32, step_size: f32) -> f32 {
-    let some = range.x <= range.y;
-    if (some & (node >= range.x) & (node <= (range.y + 1))) {
-        let point = ray_at(ray, t);
-        if (near_cell(medium, point, step_size)) {
-            return medium_region(medium, point);
-        }
-    }
-    return FAR;
-}
-
-// Finds the wall between two nodes, of which one is inside: distance along the ray and signed distance
-// of each.
-fn find_wall(ray: Ray, medium: u32, inside_node: vec2f, outside_node: vec2f) -> f32 {
-    var inside = inside_node;
-    var outside = outside_node;
-    for (var round = 0u; round < WALL_ROUNDS; round++) {
-        let t = wall_probe(inside, outside);
-        let value = medium_region(medium, ray_at(ray, t));
-        inside = select(inside, vec2f(t, value), value < 0.0);
-        outside = select(vec2f(t, value), outside, value < 0.0);
-    }
-    return wall_probe(inside, outside);
+// Two places of which one is inside: distance along the ray and signed distance of each.
+struct Crossing {
+    inside: vec2f,
+    outside: vec2f,
+    // Which of them was found last: 0 none, 1 the one inside, 2 the other.
+    moved: u32,
 }
 
 // Where the signed distance would be 0 if it were linear between the two.
-fn wall_probe(inside: vec2f, outside: vec2f) -> f32 {
+fn crossing_probe(crossing: Crossing) -> f32 {
+    let inside = crossing.inside;
+    let outside = crossing.outside;
     return inside.x + ((outside.x - inside.x) * (inside.y / (inside.y - outside.y)));
+}
+
+// Takes the signed distance at the probe into account.
+fn crossing_narrowed(crossing: Crossing, found: vec2f) -> Crossing {
+    if (found.y < 0.0) {
+        let kept = vec2f(crossing.outside.x, select(crossing.outside.y, 0.5 * crossing.outside.y, crossing.moved == 1u));
+        return Crossing(found, kept, 1u);
+    }
+    let kept = vec2f(crossing.inside.x, select(crossing.inside.y, 0.5 * crossing.inside.y, crossing.moved == 2u));
+    return Crossing(kept, found, 2u);
+}
+
+// What is probed.
+const THE_NODE: u32 = 0u;
+const A_GAP: u32 = 1u;
+const A_WALL: u32 = 2u;
+const NO_MORE: u32 = 3u;
+
+// The region of a medium between two nodes.
+struct Between {
+    // Signed distance at the node after.
+    next: f32,
+    // Walls, of which there are none, one, or two around a chord.
+    walls: vec2f,
+    count: u32,
+}
+
+// Looks for the node after one at a distance t.x, and for walls between the two. The region is asked at one place of
+// the text, since drivers write it out at each.
+fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: vec2f) -> Between {
+    let own = (*comb).own[medium];
+    let range = (*comb).ranges[medium];
+    let known = (range.x <= range.y) & ((node + 1) >= range.x) & (node <= range.y);
+    var between = Between(FAR, vec2f(0.0), 0u);
+    var gap: Gap;
+    var crossing: Crossing;
+    var other: Crossing;
+    var wanted = 0u;
+    var aim = THE_NODE;
+    var round = 0u;
+    while (aim != NO_MORE) {
+        // Ask.
+        var probe = t.y;
+        if (aim == A_GAP) {
+            probe = gap_probe(gap, round);
+        } else if (aim == A_WALL) {
+            probe = crossing_probe(crossing);
+        }
+        let point = ray_at(ray, probe);
+        var value = FAR;
+        if ((aim != THE_NODE) || (known && near_cell(medium, point, (*comb).step))) {
+            value = medium_region(medium, point);
+        }
+        let found = vec2f(probe, value);
+        round += 1u;
+        // Decide what to ask next.
+        if (aim == THE_NODE) {
+            between.next = value;
+            let start = vec2f(t.x, own);
+            round = 0u;
+            aim = NO_MORE;
+            if ((node >= (*comb).first) & (t.x < t.y)) {
+                if ((own < 0.0) != (value < 0.0)) {
+                    crossing = Crossing(select(found, start, own < 0.0), select(start, found, own < 0.0), 0u);
+                    wanted = 1u;
+                    aim = A_WALL;
+                } else {
+                    gap = Gap(start, found);
+                    let may_enter = (own >= 0.0) & (gap_room(gap) > 0.0);
+                    aim = select(NO_MORE, A_GAP, may_enter);
+                }
+            }
+        } else if (aim == A_GAP) {
+            if (value < 0.0) {
+                crossing = Crossing(found, gap.start, 0u);
+                other = Crossing(found, gap.stop, 0u);
+                wanted = 2u;
+                aim = A_WALL;
+                round = 0u;
+            } else {
+                gap = gap_narrowed(gap, found);
+                aim = select(NO_MORE, A_GAP, (round < CHORD_ROUNDS) & (gap_room(gap) > 0.0));
+            }
+        } else {
+            crossing = crossing_narrowed(crossing, found);
+            if (round == WALL_ROUNDS) {
+                between.walls[between.count] = crossing_probe(crossing);
+                between.count += 1u;
+                crossing = other;
+                aim = select(NO_MORE, A_WALL, between.count < wanted);
+                round = 0u;
+            }
+        }
+    }
+    (*comb).own[medium] = between.next;
+    return between;
+}
+
+// Whether a medium has a panel between two nodes.
+fn has_panel(comb: ptr<function, Comb>, node: i32, t: vec2f, own: f32, between: Between) -> bool {
+    let some = (own < 0.0) | (between.next < 0.0) | (between.count > 0u);
+    return (node >= (*comb).first) & (t.x < t.y) & some;
+}
+
+// Whether a wall is where its panel ends: the first one after a node inside, the second one otherwise.
+fn wall_ends(own: f32, wall: u32) -> bool {
+    return (own < 0.0) | (wall == 1u);
 }
 
 // Integral of the positive part of a density over a stretch of a panel as long as a step, by its values at

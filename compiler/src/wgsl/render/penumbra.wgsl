@@ -147,7 +147,7 @@ fn rim(ray: Ray, slope: f32, end: vec2f) -> Ray {
     let right = vec3f(1.0 + (turn * ((d.x * d.x) * a)), turn * b, -(turn * d.x));
     let up = vec3f(b, turn + ((d.y * d.y) * a), -d.y);
     let toward = d + (((right * end.x) + (up * end.y)) * slope);
-    return Ray(ray.origin, toward / length3(toward));
+    return new_ray(ray.origin, toward / length3(toward));
 }
 
 // Area of the union of clear disks around the centre and the places on the rim, over that of the light.

@@ -2,6 +2,8 @@
 // Twin: runtime-cpu/src/render/sampling.rs, which says why.
 
 const STRIDE: vec2u = vec2u(3242174889u, 2447445414u);
+// 2^32 over the golden ratio.
+const GOLDEN_STRIDE: u32 = 2654435769u;
 const FIRST_ROUND: u32 = 9u;
 const ROUND: u32 = 8u;
 const LEAST_BRIGHTNESS: f32 = 0.0625;
@@ -30,6 +32,19 @@ fn place_in_pixel(index: u32) -> vec2f {
     let signed = select(0u - step, step, (index % 2u) == 1u);
     let place = ((vec2u(signed) * STRIDE) + vec2u(0x80000000u)) >> vec2u(16u);
     return vec2f(place) * (1.0f / 65536.0f);
+}
+
+// How far the comb of a sample is moved, in steps.
+fn comb_shift(pixel: vec2u, index: u32) -> f32 {
+    let place = ((pixel.x * STRIDE.x) + (pixel.y * STRIDE.y)) + (index * GOLDEN_STRIDE);
+    return (f32((place + 0x80000000u) >> 16u) * (1.0f / 65536.0f)) - 0.5;
+}
+
+// The ray of a sample.
+fn sample_ray(pixel: vec2u, index: u32) -> Ray {
+    var ray = camera_ray(vec2f(pixel) + place_in_pixel(index));
+    ray.shift = comb_shift(pixel, index);
+    return ray;
 }
 
 // Takes one more sample into the mean.

@@ -26,7 +26,7 @@ fn place_visibility(lamp: Arriving, point: vec3f, t: f32, scatter: ptr<function,
         asked = asked | (scatters & (vol_input[medium_word(medium)] == SHADOWED));
     }
     if (asked & lamp.shadows) {
-        return visibility(Ray(point, lamp.direction), lamp.distance, shadow_bias(t), lamp.grid);
+        return visibility(new_ray(point, lamp.direction), lamp.distance, shadow_bias(t), lamp.grid);
     }
     return vec3f(1.0);
 }

@@ -76,10 +76,10 @@ fn surface_visibility(lamp: Arriving, contact: Contact) -> vec3f {
     let origin = contact.position + (contact.normal * offset);
     if (SOFT_LIGHTS) {
         if (lamp.slope > 0.0) {
-            return soft_visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.slope, lamp.grid);
+            return soft_visibility(new_ray(origin, lamp.direction), lamp.distance, bias, lamp.slope, lamp.grid);
         }
     }
-    return visibility(Ray(origin, lamp.direction), lamp.distance, bias, lamp.grid);
+    return visibility(new_ray(origin, lamp.direction), lamp.distance, bias, lamp.grid);
 }
 
 // Radiance towards the eye per irradiance on a facing plane.

@@ -76,7 +76,7 @@ fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
     for (var node = comb.first - 2; node <= comb.last; node++) {
         // Optical depth of each node, all media together.
         if (weigh(ray, &comb, node, &weights)) {
-            depth += node_depth(ray_at(ray, node_distance(node, comb.step, 0.5)), &weights);
+            depth += node_depth(ray_at(ray, node_distance(node, comb.step, comb.offset)), &weights);
         }
         // Go on while the ray is not dark yet.
         if (smallest(depth) > OPAQUE) {
@@ -117,31 +117,31 @@ fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
 
 fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<function, array<vec4f, MEDIUM_SLOTS>>) -> vec3f {
     let step_size = (*comb).step;
-    let t = vec2f(panel_node(node, step_size, (*comb).end), panel_node(node + 1, step_size, (*comb).end));
+    let t = vec2f(panel_node(comb, node), panel_node(comb, node + 1));
     var depth = vec3f(0.0);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let own = (*comb).own[medium];
-        let next = panel_region(ray, medium, (*comb).ranges[medium], node + 1, t.y, step_size);
-        (*comb).own[medium] = next;
+        let between = find_walls(ray, medium, comb, node, t);
+        let next = between.next;
         var first = (*before)[medium];
         var last = vec4f(0.0);
         if (next < 0.0) {
             last = medium_extinction(medium, ray_at(ray, t.y));
         }
         (*before)[medium] = last;
-        if ((node >= (*comb).first) & (t.x < t.y) & ((own < 0.0) | (next < 0.0))) {
+        if (has_panel(comb, node, t, own, between)) {
             var stretch = t;
-            if ((own < 0.0) != (next < 0.0)) {
-                let leaves = own < 0.0;
-                let start = vec2f(t.x, own);
-                let stop = vec2f(t.y, next);
-                let wall = find_wall(ray, medium, select(stop, start, leaves), select(start, stop, leaves));
-                let matter = medium_extinction(medium, ray_at(ray, wall));
-                first = select(matter, first, leaves);
-                last = select(last, matter, leaves);
-                stretch = select(vec2f(wall, t.y), vec2f(t.x, wall), leaves);
+            for (var wall = 0u; wall < between.count; wall++) {
+                let matter = medium_extinction(medium, ray_at(ray, between.walls[wall]));
+                if (wall_ends(own, wall)) {
+                    last = matter;
+                    stretch.y = between.walls[wall];
+                } else {
+                    first = matter;
+                    stretch.x = between.walls[wall];
+                }
             }
-            let open = open_ends(node, t, own, next, step_size);
+            let open = open_ends(comb, node, t, own, next);
             let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }

@@ -272,7 +272,7 @@ fn roulette_keeps_the_mean() {
     let tapes = Tapes::new(&world.program);
     let fields = Batch::new(&tapes, &world.frame);
     let mut integrator = Integrator::new(&scene, fields, Batches::DEFAULT);
-    let ray = |index: u16| Ray { origin: [f32::from(index) * 1e-5, 0.0, 4.0], direction: [0.0, 0.0, -1.0] };
+    let ray = |index: u16| Ray::new([f32::from(index) * 1e-5, 0.0, 4.0], [0.0, 0.0, -1.0]);
     let rays: Vec<_> = (0..60_000).map(ray).collect();
     let depths = integrator.reference_depth(&rays, &vec![9.0; rays.len()]).expect("not the comb");
     let (found, error) = mean(depths.iter().map(|depth| (-f64::from(depth[0])).exp()));
@@ -291,7 +291,7 @@ fn paths_know_their_cell() {
         let turn = f32::from(index) * 0.37;
         let direction = [turn.cos() * 0.8, 0.6 * (0.3 * turn).sin(), turn.sin()];
         let direction = direction.map(|x| x / length(direction));
-        let ray = Ray { origin: [0.01 * turn.sin(), 0.1, 0.2], direction };
+        let ray = Ray::new([0.01 * turn.sin(), 0.1, 0.2], direction);
         let stream = Stream::of_ray(&ray, 0, Purpose::Path);
         let mut path = grid.path(&ray, 9.0, stream);
         while let Some(Tentative { t, rate }) = path.next::<f32>(&grid) {

@@ -240,12 +240,16 @@ fn angle_about(axis: [f64; 3], from: [f64; 3], to: [f64; 3]) -> f64 {
     dot(to, cross(axis, from)).atan2(dot(to, from))
 }
 
+/// Components of a tangent that differ by less count as equal: rounding, and bends that count as straight, must
+/// not decide between two axes.
+const SAME_COMPONENT: f64 = 1e-6;
+
 /// First frame axis U for a unit tangent: the coordinate axis with the smallest |component| (the
-/// first of equals), made perpendicular and unit. Both the pieces and the reference use it.
+/// first of those within 1e-6 of each other), made perpendicular and unit. Both the pieces and the reference use it.
 pub fn initial_normal(tangent: [f64; 3]) -> [f64; 3] {
     let mut smallest = 0;
     for i in 1..3 {
-        if tangent[i].abs() < tangent[smallest].abs() {
+        if tangent[i].abs() < tangent[smallest].abs() - SAME_COMPONENT {
             smallest = i;
         }
     }

@@ -92,7 +92,7 @@ fn vol_rough_cube_root(x: f32) -> f32 {
 struct VolInner {
     t: f32,
     dist_sq: f32,
-    a0: f32,
+    start_is_least: bool,
     start_sq: f32,
     dips: bool,
 }
@@ -101,7 +101,7 @@ struct VolInner {
 fn vol_foot(p: vec3f, word: u32) -> VolFoot {
     let inner = vol_inner(p, word);
     // Prefer the start where it is itself a minimum and nearer.
-    let start_wins = (inner.a0 >= 0.0) & (inner.start_sq <= inner.dist_sq);
+    let start_wins = inner.start_is_least & (inner.start_sq <= inner.dist_sq);
     return VolFoot(select(inner.t, 0.0, start_wins), select(inner.dist_sq, inner.start_sq, start_wins));
 }
 
@@ -142,7 +142,8 @@ fn vol_inner(p: vec3f, word: u32) -> VolInner {
     let t2 = vol_polish_step(t1, a3, a2x3, a1, a0, low);
     let end = vol_reach(w, b1, b2, t2);
     let dips = ((!is_flat) & (k > 0.0)) & ((e > 0.0) & (e < 1.0));
-    return VolInner(t2, vol_dot(end, end), a0, vol_dot(w, w), dips);
+    let start_is_least = (a0 > 0.0) | ((a0 == 0.0) & (a1 >= 0.0));
+    return VolInner(t2, vol_dot(end, end), start_is_least, vol_dot(w, w), dips);
 }
 
 // One Newton step on `u^3 + gap3 u^2 + m u = k`, u >= 0.

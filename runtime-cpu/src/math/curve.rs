@@ -160,8 +160,9 @@ pub struct Inner {
     pub t: f32,
     /// Squared distance there.
     pub dist_sq: f32,
-    /// g(0), a quarter of the derivative of the squared distance at the start.
-    pub a0: f32,
+    /// Whether the start is a minimum of the distance by itself: it grows from there on. At a cusp its slope is 0
+    /// there, and its curvature says.
+    pub start_is_least: bool,
     /// Squared distance at the start.
     pub start_sq: f32,
     /// Whether g falls below 0 between a start and an end where it is not.
@@ -176,9 +177,9 @@ pub struct Inner {
 ///   t = 1; two Newton steps on the depressed cubic from above, two more on g itself
 #[inline(always)]
 pub fn foot(p: [f32; 3], piece: &Piece) -> Foot {
-    let Inner { t, dist_sq, a0, start_sq, .. } = inner(p, piece);
+    let Inner { t, dist_sq, start_is_least, start_sq, .. } = inner(p, piece);
     // Prefer the start where it is itself a minimum and nearer.
-    let start_wins = (a0 >= 0.0) & (start_sq <= dist_sq);
+    let start_wins = start_is_least & (start_sq <= dist_sq);
     Foot { t: if start_wins { 0.0 } else { t }, dist_sq: if start_wins { start_sq } else { dist_sq } }
 }
 
@@ -218,7 +219,7 @@ pub fn inner(p: [f32; 3], piece: &Piece) -> Inner {
     Inner {
         t: t2,
         dist_sq: dot(end, end),
-        a0,
+        start_is_least: (a0 > 0.0) | ((a0 == 0.0) & (a1 >= 0.0)),
         start_sq: dot(w, w),
         dips: !flat & (k > 0.0) & (e > 0.0) & (e < 1.0),
     }

@@ -222,6 +222,10 @@ fn adds_up_elsewhere(span: Span) -> Box<Diagnostic> {
     Box::new(Diagnostic::error("E0407", message, span, label).with_help(help))
 }
 
+/// A volume that is squeezed more counts as squeezed by this: where a curve has no length its matter is dense, not
+/// infinitely so.
+const LEAST_STRETCH: f64 = 1e-12;
+
 /// The density, divided by the stretch of volume where a key of the medium or its tube asks for that:
 /// then it is the density of the unit cylinder, and the mass does not depend on the tube's shape.
 fn conserved(
@@ -239,7 +243,9 @@ fn conserved(
     }
     let field = vol_language::hir::LocalField::Stretch;
     let stretch = point.region.local_field(lowerer, point.world, field, block.span)?;
-    Ok(lowerer.graph.div(density, stretch[0]))
+    let least = lowerer.graph.number(LEAST_STRETCH);
+    let stretch = lowerer.graph.max(stretch[0], least);
+    Ok(lowerer.graph.div(density, stretch))
 }
 
 fn lighting(lowerer: &mut Lowerer<'_>, block: &Block) -> Lowered<Lighting> {

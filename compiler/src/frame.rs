@@ -28,6 +28,23 @@ pub struct Aabb {
     pub hi: [f32; 3],
 }
 
+impl Aabb {
+    /// The smallest box around both.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        Self {
+            lo: std::array::from_fn(|axis| self.lo[axis].min(other.lo[axis])),
+            hi: std::array::from_fn(|axis| self.hi[axis].max(other.hi[axis])),
+        }
+    }
+
+    /// Distance between its corners.
+    #[must_use]
+    pub fn diagonal(&self) -> f32 {
+        (0..3).map(|axis| (self.hi[axis] - self.lo[axis]).powi(2)).sum::<f32>().sqrt()
+    }
+}
+
 /// Everything about one frame of a program. Objects, media and lights that are switched off are
 /// left out, so indices here are not those of the program.
 #[derive(Clone, Debug)]

@@ -20,5 +20,5 @@ pub mod render;
 
 pub use render::{
     Choice, GridChoice, Method, NoMajorant, Stats, StepChoice, TubeBounds, choose, choose_light_grids,
-    choose_step, fixed_step_default, reference_pixels, render, render_by, render_reference,
+    choose_step, fixed_step_default, reference_pixels, render, render_by, render_reference, spread_pixels,
 };

@@ -112,19 +112,7 @@ pub fn default_folder() -> PathBuf {
 /// Pixels spread evenly over a picture: at most `count`, none twice; all of a small picture.
 #[must_use]
 pub fn spread(size: [u32; 2], count: usize) -> Vec<[u32; 2]> {
-    let [width, height] = size;
-    let all = u64::from(width) * u64::from(height);
-    if all <= count as u64 {
-        return (0..height).flat_map(|y| (0..width).map(move |x| [x, y])).collect();
-    }
-    // Multiples of the powers of the plastic number (Roberts 2018).
-    let along = |index: usize, ratio: f64, side: u32| {
-        let place = (0.5 + index as f64 * ratio).fract();
-        ((place * f64::from(side)) as u32).min(side - 1)
-    };
-    let mut places: Vec<[u32; 2]> = (0..count)
-        .map(|i| [along(i, 0.754_877_666_246_692_8, width), along(i, 0.569_840_290_998_053_3, height)])
-        .collect();
+    let mut places = vol_runtime_cpu::spread_pixels(size, count);
     places.sort_unstable_by_key(|&[x, y]| (y, x));
     places.dedup();
     places

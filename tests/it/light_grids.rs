@@ -30,7 +30,7 @@ fn cloud(absorb: &str) -> String {
 const SIZE: [u32; 2] = [24, 24];
 
 /// Error that is allowed.
-const MAX_ERROR: f32 = 1e-2;
+const MAX_ERROR: f32 = 1.5e-2;
 
 /// Grids as for a large picture, of which a small one is drawn.
 fn with_grids(program: &Program, job: &Job) -> Result<Frame, Failed> {

@@ -8,9 +8,8 @@
 //! ten times as large as in rays, which are means over many nodes (so is that of marching).
 
 use super::fields::Batch;
-use super::film::Radiance;
 use super::light_grid::{self, Grid};
-use super::pilot::{MOST_BUDGET, Pilot, choose_step, cost};
+use super::pilot::{MOST_BUDGET, Picture, Pilot, choose_step, cost};
 use super::scene::{Medium, Scene};
 use crate::interp::Tapes;
 use std::sync::Arc;
@@ -77,7 +76,9 @@ pub fn choose_light_grids(program: &Program, frame: &Frame, job: &Job, max_error
     let tapes = Tapes::new(program);
     let pilot = Pilot::new(frame, &tapes, job.size);
     let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
-    let Some(((wanted, _), costs)) = pilot.expose_scene(&fine, LIMIT).zip(costs(frame, job, &pilot)) else {
+    let Some(((wanted, _), costs)) =
+        pilot.expose_scene(&fine, pilot.all(), LIMIT).zip(costs(frame, job, &pilot))
+    else {
         return choices;
     };
     let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
@@ -109,10 +110,7 @@ fn plain_scene(frame: &Frame, job: &Job) -> Scene<f32> {
 /// The box around all media.
 fn around(media: &[Medium<f32>]) -> Option<Aabb> {
     let boxes = media.iter().map(|medium| Aabb { lo: medium.lo, hi: medium.hi });
-    boxes.reduce(|a, b| Aabb {
-        lo: [0, 1, 2].map(|axis| a.lo[axis].min(b.lo[axis])),
-        hi: [0, 1, 2].map(|axis| a.hi[axis].max(b.hi[axis])),
-    })
+    boxes.reduce(|a, b| a.union(&b))
 }
 
 /// Evaluations that marching towards each light would take in the whole picture, from a few rays with the
@@ -121,7 +119,7 @@ fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>) -> Option<Vec<f64>> {
     let spent = |light: Option<usize>| {
         let mut scene = plain_scene(frame, job);
         scene.lights.iter_mut().for_each(|other| other.shadows &= Some(other.index) == light);
-        pilot.expose_scene(&scene, LIMIT).map(|(_, stats)| cost(&stats) as f64)
+        pilot.expose_scene(&scene, pilot.all(), LIMIT).map(|(_, stats)| cost(&stats) as f64)
     };
     let samples = if job.sampling.tolerance > 0.0 {
         job.sampling.most.min(ADAPTIVE_SAMPLES)
@@ -147,7 +145,7 @@ struct Trial<'a> {
     /// Around all media.
     bounds: Aabb,
     /// The pilot's rays with that step.
-    wanted: Vec<Radiance<f32>>,
+    wanted: Picture,
     /// Error that a grid may have.
     target: f32,
     /// Words that a grid may have.
@@ -200,7 +198,7 @@ impl Trial<'_> {
     fn error(&mut self, light: usize, grid: &Arc<LightGrid>) -> f32 {
         self.fine.grids.resize_with(light, || None);
         self.fine.grids.push(Some(Grid::new(grid)));
-        let got = self.pilot.expose_scene(&self.fine, LIMIT);
+        let got = self.pilot.expose_scene(&self.fine, self.pilot.all(), LIMIT);
         self.fine.grids.clear();
         got.map_or(f32::INFINITY, |(got, _)| self.pilot.difference(&got, &self.wanted))
     }

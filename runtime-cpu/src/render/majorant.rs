@@ -47,11 +47,7 @@ impl Majorants {
     /// Bounds all media of a frame.
     pub(super) fn new(program: &Program, frame: &Frame) -> Result<Self, NoMajorant> {
         let boxes = frame.media.iter().filter_map(|medium| padded(&medium.bounds));
-        let around = boxes.reduce(|a, b| Aabb {
-            lo: [0, 1, 2].map(|i| a.lo[i].min(b.lo[i])),
-            hi: [0, 1, 2].map(|i| a.hi[i].max(b.hi[i])),
-        });
-        let Some(around) = around else {
+        let Some(around) = boxes.reduce(|a, b| a.union(&b)) else {
             return Ok(Self { lo: [0.0; 3], hi: [0.0; 3], count: [0; 3], rates: Vec::new() });
         };
         let (lo, hi) = (around.lo.map(f64::from), around.hi.map(f64::from));

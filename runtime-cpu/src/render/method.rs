@@ -86,17 +86,9 @@ impl Way {
 /// media, in scene units; of the whole scene where they have no bounds.
 #[must_use]
 pub fn fixed_step_default(frame: &Frame) -> f32 {
-    let mut around = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
-    for medium in &frame.media {
-        for axis in 0..3 {
-            around.lo[axis] = around.lo[axis].min(medium.bounds.lo[axis]);
-            around.hi[axis] = around.hi[axis].max(medium.bounds.hi[axis]);
-        }
-    }
-    let diagonal =
-        |bounds: &Aabb| (0..3).map(|axis| (bounds.hi[axis] - bounds.lo[axis]).powi(2)).sum::<f32>().sqrt();
-    let sizes = [diagonal(&around), diagonal(&frame.bounds)];
-    sizes.into_iter().find(|&size| size > 0.0 && size < 1e5).unwrap_or(1.0) / 96.0
+    let around = frame.media.iter().map(|medium| medium.bounds).reduce(|a, b| a.union(&b));
+    let boxes = [around.unwrap_or(frame.bounds), frame.bounds];
+    boxes.iter().map(Aabb::diagonal).find(|&size| size > 0.0 && size < 1e5).unwrap_or(1.0) / 96.0
 }
 
 /// [`render`](super::render()) on the surrounding pool by one of the methods.

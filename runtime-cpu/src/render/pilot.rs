@@ -12,8 +12,9 @@
 //! medium in a corner gets as many rays as one that fills the picture. The mean square of the differences is
 //! taken [`SAFETY`] standard errors above what the rays say.
 //!
-//! **Work** is counted in samples, not in time: the choice must not depend on how busy the machine is. A
-//! round that would cost more than the picture deserves is stopped and not used.
+//! **Work** is counted in samples, not in time: the choice must not depend on how busy the machine is. What was asked
+//! for counts, not how large the picture is. Where rounds grow dear fewer rays are taken, a beginning of those
+//! before; and only while the errors so far say that what is left is within [`MOST_BUDGET`].
 
 use super::Stats;
 use super::camera::{Ray, slab};
@@ -21,36 +22,35 @@ use super::fields::Batch;
 use super::film::Radiance;
 use super::sampling::sample_ray;
 use super::scene::{Batches, Integrator, Purse, Scene};
+use super::spread::spread_pixels;
 use super::survey;
 use crate::interp::Tapes;
 use crate::math::fun::{exp2, log2};
+use crate::real::{Vec3, sub};
 use rayon::prelude::*;
 use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
-/// Most rays that meet media.
-const RAYS: usize = 256;
+/// Most rays of each stratum: of those that meet media, and of the others.
+const RAYS: [usize; 2] = [256, 128];
 
-/// Most other rays.
-const OTHER_RAYS: usize = 128;
+/// As many are always taken.
+const LEAST_RAYS: [usize; 2] = [128, 48];
 
 /// Rays that one thread takes at a time.
 const RAYS_PER_TASK: usize = 16;
 
 /// Pixels that are tried to find them.
-const CANDIDATES: u32 = 16_384;
+const CANDIDATES: usize = 16_384;
 
 /// Most halvings of the first step.
-const MAX_HALVINGS: u32 = 9;
+const MAX_HALVINGS: u32 = 12;
 
 /// Samples that a round may always take: a second or two.
-const FREE_BUDGET: u64 = 16_000_000;
+const FREE_BUDGET: u64 = 32_000_000;
 
-/// Samples that no round may exceed.
+/// Samples that no round may exceed: a minute.
 pub(super) const MOST_BUDGET: u64 = 1_000_000_000;
-
-/// Between the two, a round may cost this part of the picture at its step.
-const BUDGET_SHARE: f64 = 1.0;
 
 /// Samples of a round over those of the one before: twice as many nodes, and from each of them
 /// twice as many along the shadow rays.
@@ -59,6 +59,9 @@ const GROWTH: u64 = 4;
 /// A shadow ray's step over a camera ray's: half the samples for 1.1 to 1.4 times the error
 /// (algorithms.md §5.2).
 const SHADOW_RATIO: f32 = 2.0;
+
+/// An error that exceeds what is allowed by no more needs no further round: the step for it lies between the last two.
+const NEARLY: f32 = 1.5;
 
 /// Part of the allowed error that an interpolated step is meant to have.
 const AIM: f32 = 0.8;
@@ -72,8 +75,11 @@ const GREATEST_POWER: f32 = 3.0;
 /// A lower power comes from parts that are missed now and then: between two steps nothing is sure.
 const STEADY_POWER: f32 = 1.5;
 
+/// Errors are hoped to fall with this power at least: at long steps they tell too little to give up.
+const HOPED_POWER: f32 = 2.0;
+
 /// Standard errors of the mean square that are added to it.
-const SAFETY: f64 = 1.0;
+const SAFETY: f64 = 2.0;
 
 /// Both quadratures.
 const FORMS: [Quadrature; 2] = [Quadrature::Midpoint, Quadrature::Corrected];
@@ -117,10 +123,13 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     let tapes = Tapes::new(program);
     let pilot = Pilot::new(frame, &tapes, size);
     let mut rounds: Vec<Round> = Vec::new();
-    let mut step = survey::first_step(frame, &pilot.rays[..pilot.meeting], Batch::new(&tapes, frame));
-    let mut limit = FREE_BUDGET;
+    let mut step = survey::first_step(frame, &pilot.rays[0], Batch::new(&tapes, frame));
     loop {
-        match pilot.round(step, limit) {
+        let (counts, limit) = match rounds.last() {
+            None => (pilot.all(), FREE_BUDGET),
+            Some(last) => (last.next_counts(), MOST_BUDGET),
+        };
+        match pilot.round(step, counts, limit) {
             Some(round) => rounds.push(round),
             // Even the first step is too short.
             None if rounds.is_empty() && step < 1e6 => {
@@ -129,11 +138,10 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
             }
             None => break,
         }
+        let candidates = pilot.candidates(&rounds);
+        let met = rounds.len() > 2 && candidates.iter().any(|form| form.error <= NEARLY * max_error);
         let last = &rounds[rounds.len() - 1];
-        let spent = last.costs[0] + last.costs[1];
-        limit = FREE_BUDGET.max(MOST_BUDGET.min((BUDGET_SHARE * pilot.scale * spent as f64) as u64));
-        let met = rounds.len() > 2 && pilot.candidates(&rounds).iter().any(|form| form.error <= max_error);
-        if met || rounds.len() as u32 > MAX_HALVINGS || GROWTH * spent > limit {
+        if met || rounds.len() as u32 > MAX_HALVINGS || !last.may_go_on(&candidates, max_error) {
             break;
         }
         step *= 0.5;
@@ -146,22 +154,57 @@ pub(super) struct Pilot<'a> {
     frame: &'a Frame,
     tapes: &'a Tapes,
     size: [u32; 2],
-    /// Those that meet media first.
-    rays: Vec<Ray<f32>>,
-    /// How many of them meet media.
-    meeting: usize,
-    /// Part of the picture that a ray of each stratum stands for.
-    shares: [f64; 2],
+    /// Those that meet media, and others.
+    rays: [Vec<Ray<f32>>; 2],
+    /// Part of the picture that each stratum is.
+    portions: [f64; 2],
     /// Work of the whole picture, one sample per pixel, over that of the rays.
     pub(super) scale: f64,
 }
 
+/// What rays of each stratum see: a beginning of all.
+pub(super) type Picture = [Vec<Radiance<f32>>; 2];
+
 /// Both pictures at one step.
 struct Round {
     step: f32,
-    pictures: [Vec<Radiance<f32>>; 2],
+    /// Rays of each stratum.
+    counts: [usize; 2],
+    pictures: [Picture; 2],
     /// Samples taken.
     costs: [u64; 2],
+}
+
+impl Round {
+    /// Samples of the next round with as many rays.
+    fn next_cost(&self) -> u64 {
+        GROWTH * (self.costs[0] + self.costs[1])
+    }
+
+    /// Rays of the next round: fewer if as many would be dear.
+    fn next_counts(&self) -> [usize; 2] {
+        let part = (FREE_BUDGET as f64 / self.next_cost().max(1) as f64).min(1.0);
+        [0, 1].map(|stratum| {
+            let count = self.counts[stratum];
+            count.min(LEAST_RAYS[stratum].max((part * count as f64) as usize))
+        })
+    }
+
+    /// Whether the next round costs little, or the round that is likely to end the search is still allowed, given
+    /// what is known at the step before this one.
+    fn may_go_on(&self, candidates: &[Candidate], max_error: f32) -> bool {
+        if self.next_cost() <= FREE_BUDGET {
+            return true;
+        }
+        let halved = |form: &Candidate| {
+            let power = power_of(form.error, form.before).unwrap_or(LEAST_POWER);
+            log2(form.error / max_error) / power.max(HOPED_POWER)
+        };
+        let halvings = candidates.iter().map(halved).fold(f32::INFINITY, f32::min);
+        let thinned = LEAST_RAYS[0] as f32 / self.counts[0].max(LEAST_RAYS[0]) as f32;
+        let last = thinned * exp2(2.0 * halvings.max(1.0)) * (self.costs[0] + self.costs[1]) as f32;
+        last <= MOST_BUDGET as f32
+    }
 }
 
 /// What is known of a quadrature at the last step but one.
@@ -182,51 +225,58 @@ impl<'a> Pilot<'a> {
             frame,
             &StepChoice::new(1.0, Quadrature::Midpoint, 0.0).job(size, Sampling::CENTRE),
         );
-        let places = pixels(size);
+        let places = spread_pixels(size, CANDIDATES);
         let count = places.len();
-        let rays = places.map(|pixel| sample_ray(&scene, pixel, 0));
-        let (mut meeting, mut others): (Vec<_>, Vec<_>) = rays.partition(|ray| meets_media(&scene, ray));
-        let portions = [meeting.len(), others.len()].map(|part| part as f64 / count as f64);
-        meeting.truncate(RAYS);
-        others.truncate(OTHER_RAYS);
-        let share = |portion: f64, taken: usize| portion / taken.max(1) as f64;
-        let shares = [share(portions[0], meeting.len()), share(portions[1], others.len())];
+        let rays = places.into_iter().map(|pixel| sample_ray(&scene, pixel, 0));
+        let (meeting, others): (Vec<_>, Vec<_>) = rays.partition(|ray| meets_media(&scene, ray));
+        let mut rays = [meeting, others];
+        let portions = [0, 1].map(|stratum| rays[stratum].len() as f64 / count as f64);
+        rays.iter_mut().zip(RAYS).for_each(|(rays, most)| rays.truncate(most));
+        let [meets, passes] = [0, 1].map(|stratum| rays[stratum].len().max(1) as f64);
         let pixels = f64::from(size[0]) * f64::from(size[1]);
-        let scale = pixels * portions[0].max(shares[1]) / meeting.len().max(1) as f64;
-        let meets = meeting.len();
-        meeting.append(&mut others);
-        Self { frame, tapes, size, rays: meeting, meeting: meets, shares, scale }
+        let scale = pixels * portions[0].max(portions[1] / passes) / meets;
+        Self { frame, tapes, size, rays, portions, scale }
     }
 
-    /// Renders the rays at one step; nothing if that takes more samples than `limit`.
-    fn round(&self, step: f32, limit: u64) -> Option<Round> {
-        let midpoint = self.expose(StepChoice::new(step, FORMS[0], 0.0), limit)?;
-        let corrected = self.expose(StepChoice::new(step, FORMS[1], 0.0), limit)?;
-        Some(Round {
-            step,
-            costs: [cost(&midpoint.1), cost(&corrected.1)],
-            pictures: [midpoint.0, corrected.0],
-        })
+    /// How many rays there are in each stratum.
+    pub(super) fn all(&self) -> [usize; 2] {
+        [self.rays[0].len(), self.rays[1].len()]
     }
 
-    fn expose(&self, choice: StepChoice, limit: u64) -> Option<(Vec<Radiance<f32>>, Stats)> {
-        let scene = Scene::<f32>::new(self.frame, &choice.job(self.size, Sampling::CENTRE));
-        self.expose_scene(&scene, limit)
+    /// Renders the first rays at one step; nothing if that takes more samples than `limit`.
+    fn round(&self, step: f32, counts: [usize; 2], limit: u64) -> Option<Round> {
+        let expose = |quadrature| {
+            let choice = StepChoice::new(step, quadrature, 0.0);
+            let scene = Scene::<f32>::new(self.frame, &choice.job(self.size, Sampling::CENTRE));
+            self.expose_scene(&scene, counts, limit)
+        };
+        let [midpoint, corrected] = [expose(FORMS[0])?, expose(FORMS[1])?];
+        let costs = [cost(&midpoint.1), cost(&corrected.1)];
+        Some(Round { step, counts, costs, pictures: [midpoint.0, corrected.0] })
     }
 
-    /// Renders the rays in a scene of the frame; nothing if that takes more samples than `limit`.
-    pub(super) fn expose_scene(&self, scene: &Scene<f32>, limit: u64) -> Option<(Vec<Radiance<f32>>, Stats)> {
+    /// Renders the first rays of each stratum in a scene of the frame; nothing if that takes more samples than
+    /// `limit`.
+    pub(super) fn expose_scene(
+        &self,
+        scene: &Scene<f32>,
+        counts: [usize; 2],
+        limit: u64,
+    ) -> Option<(Picture, Stats)> {
         let purse = Purse::new(limit);
         let render = |rays: &[_]| {
             let fields = Batch::new(self.tapes, self.frame);
             let mut integrator = Integrator::new(scene, fields, Batches::DEFAULT).paid_from(&purse);
             (integrator.radiance(rays), integrator.stats)
         };
-        let parts: Vec<_> = self.rays.par_chunks(RAYS_PER_TASK).map(render).collect();
         let mut stats = Stats::default();
-        parts.iter().for_each(|part| stats.add(&part.1));
-        let radiances = parts.into_iter().flat_map(|part| part.0).collect();
-        (!purse.is_overdrawn()).then_some((radiances, stats))
+        let picture = [0, 1].map(|stratum| {
+            let rays = &self.rays[stratum][..counts[stratum]];
+            let parts: Vec<_> = rays.par_chunks(RAYS_PER_TASK).map(render).collect();
+            parts.iter().for_each(|part| stats.add(&part.1));
+            parts.into_iter().flat_map(|part| part.0).collect()
+        });
+        (!purse.is_overdrawn()).then_some((picture, stats))
     }
 
     /// What the rounds say about each quadrature, two of them at least.
@@ -271,27 +321,28 @@ impl<'a> Pilot<'a> {
         }
     }
 
-    /// Rms of the difference over rms of the finer picture.
-    pub(super) fn difference(&self, coarse: &[Radiance<f32>], fine: &[Radiance<f32>]) -> f32 {
-        let square = |a: f32| f64::from(a).powi(2);
-        let apart = |(a, b): (&Radiance<f32>, &Radiance<f32>)| -> f64 {
-            a.color.iter().zip(&b.color).map(|(&a, &b)| (f64::from(a) - f64::from(b)).powi(2)).sum()
-        };
-        let changes: Vec<f64> = coarse.iter().zip(fine).map(apart).collect();
+    /// Rms of the difference over rms of the finer picture, from the rays that both have.
+    pub(super) fn difference(&self, coarse: &Picture, fine: &Picture) -> f32 {
         let (mut changed, mut variance, mut whole) = (0.0, 0.0, 0.0);
-        let strata = [0..self.meeting, self.meeting..changes.len()];
-        for (stratum, share) in strata.into_iter().zip(self.shares) {
-            let count = stratum.len() as f64;
-            let sum: f64 = changes[stratum.clone()].iter().sum();
-            let mean = sum / count.max(1.0);
-            let spread: f64 = changes[stratum.clone()].iter().map(|change| (change - mean).powi(2)).sum();
+        for stratum in 0..2 {
+            let pairs = coarse[stratum].iter().zip(&fine[stratum]);
+            let changes: Vec<f64> = pairs.map(|(a, b)| squared(sub(a.color, b.color))).collect();
+            let count = changes.len().max(1) as f64;
+            let share = self.portions[stratum] / count;
+            let sum: f64 = changes.iter().sum();
+            let mean = sum / count;
+            let spread: f64 = changes.iter().map(|change| (change - mean).powi(2)).sum();
             changed += share * sum;
             variance += share * share * spread * (count / (count - 1.0).max(1.0));
-            whole += share * fine[stratum].iter().flat_map(|ray| ray.color).map(square).sum::<f64>();
+            whole += share * fine[stratum][..changes.len()].iter().map(|ray| squared(ray.color)).sum::<f64>();
         }
         let bound = changed + SAFETY * variance.sqrt();
         if bound > 0.0 { (bound / whole.max(f64::MIN_POSITIVE)).sqrt() as f32 } else { 0.0 }
     }
+}
+
+fn squared(color: Vec3<f32>) -> f64 {
+    color.map(f64::from).map(|channel| channel * channel).iter().sum()
 }
 
 /// Samples of a part.
@@ -322,33 +373,6 @@ fn between(step: f32, error: f32, before: Option<f32>, max_error: f32) -> (f32, 
     };
     let ratio = exp2(log2(AIM * max_error / error) / power).clamp(least, most);
     (ratio * step, exp2(power * log2(ratio)) * error)
-}
-
-/// Pixels all over the picture, in an order of which every beginning is spread evenly: of a
-/// large picture multiples of the powers of the plastic number, of a small one all pixels, shuffled.
-fn pixels([width, height]: [u32; 2]) -> impl ExactSizeIterator<Item = [u32; 2]> {
-    let count = width.saturating_mul(height);
-    let mut order: Vec<u32> = (0..count.min(CANDIDATES)).collect();
-    if count <= CANDIDATES {
-        order.sort_by_key(|&index| mixed(index));
-    }
-    order.into_iter().map(move |index| {
-        if count <= CANDIDATES {
-            return [index % width, index / width];
-        }
-        let along = |ratio: f64, length: u32| {
-            let place = (0.5 + f64::from(index + 1) * ratio).fract() * f64::from(length);
-            place as u32
-        };
-        [along(0.754_877_666_246_692_8, width), along(0.569_840_290_998_053_2, height)]
-    })
-}
-
-/// A number that says nothing about `index`, another for each (finalizer of MurmurHash3).
-fn mixed(index: u32) -> u32 {
-    let a = (index ^ (index >> 16)).wrapping_mul(0x85eb_ca6b);
-    let b = (a ^ (a >> 13)).wrapping_mul(0xc2b2_ae35);
-    b ^ (b >> 16)
 }
 
 /// Whether a ray meets a box in which a medium may be.
@@ -391,5 +415,32 @@ mod tests {
         assert_eq!(between(1.0, 1.0, None, 1e-2), (0.5, 1.0));
         let (step, estimate) = between(1.0, 1.1e-2, Some(4.4e-2), 1e-2);
         assert!(step > 0.8 && step < 0.9 && (estimate - 8e-3).abs() < 1e-5, "{step} {estimate}");
+    }
+
+    /// A round of which each form took `cost` samples.
+    fn round(cost: u64) -> Round {
+        Round { step: 1.0, counts: [256, 40], pictures: Default::default(), costs: [cost; 2] }
+    }
+
+    #[test]
+    fn dear_rounds_take_fewer_rays() {
+        assert_eq!(round(FREE_BUDGET / 8).next_counts(), [256, 40]);
+        assert_eq!(round(FREE_BUDGET / 6).next_counts(), [192, 40]);
+        assert_eq!(round(MOST_BUDGET).next_counts(), [LEAST_RAYS[0], LEAST_RAYS[1].min(40)]);
+    }
+
+    #[test]
+    fn a_search_ends_where_it_is_hopeless() {
+        let form = |error: f32| Candidate {
+            quadrature: Quadrature::Midpoint,
+            step: 1.0,
+            error,
+            before: Some(4.0 * error),
+            cost: 1,
+        };
+        // Cheap rounds go on in any case, dear ones if two powers of the step lead there.
+        assert!(round(1000).may_go_on(&[form(1.0)], 1e-4));
+        assert!(round(FREE_BUDGET).may_go_on(&[form(1e-2), form(1e-3)], 1e-4));
+        assert!(!round(FREE_BUDGET).may_go_on(&[form(1e-1), form(1e-2)], 1e-4));
     }
 }

@@ -9,7 +9,7 @@ use super::camera::{Ray, slab};
 use super::fields::{Fields, Points};
 use super::scene::Scene;
 use crate::real::largest;
-use vol_compiler::frame::{Aabb, Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 
 /// Rays that are probed.
 const RAYS: usize = 64;
@@ -63,8 +63,7 @@ fn quantile(ways: &mut [[f32; 2]], which: usize, fraction: f32) -> f32 {
 
 /// Diagonal of the box around everything bounded, 1 if there is none.
 fn scene_size(frame: &Frame) -> f32 {
-    let Aabb { lo, hi } = frame.bounds;
-    let diagonal = (0..3).map(|axis| (hi[axis] - lo[axis]).powi(2)).sum::<f32>().sqrt();
+    let diagonal = frame.bounds.diagonal();
     if diagonal > 0.0 && diagonal < LONGEST { diagonal } else { 1.0 }
 }
 

@@ -20,5 +20,6 @@ pub mod render;
 
 pub use render::{
     Choice, GridChoice, Method, NoMajorant, Stats, StepChoice, TubeBounds, choose, choose_light_grids,
-    choose_step, fixed_step_default, reference_pixels, render, render_by, render_reference, spread_pixels,
+    choose_step, fixed_step_default, least_step, reference_pixels, render, render_by, render_reference,
+    spread_pixels,
 };

@@ -55,7 +55,7 @@ mod tube_axis;
 
 pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids};
 pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
-pub use pilot::{StepChoice, choose_step};
+pub use pilot::{StepChoice, choose_step, least_step};
 pub use spread::spread_pixels;
 
 use crate::interp::Tapes;

@@ -114,7 +114,9 @@ pub(super) fn plan(
             let max_error = arguments.max_error.unwrap_or(MAX_ERROR);
             let scale = arguments.step_scale.unwrap_or(1.0);
             let chosen = vol_runtime_cpu::choose(program, frame, size, sampling, max_error);
-            let (step, shadow_step) = (scale * chosen.job.step, scale * chosen.job.shadow_step);
+            // Not so short that rays would end before they are through.
+            let scaled = |step: f32| (scale * step).max(vol_runtime_cpu::least_step(frame));
+            let (step, shadow_step) = (scaled(chosen.job.step), scaled(chosen.job.shadow_step));
             Plan {
                 method: Method::Comb,
                 job: Job { step, shadow_step, ..chosen.job },

@@ -23,6 +23,9 @@ use vol_compiler::frame::Quadrature;
 /// Most nodes of one ray: a medium without bounds ends after so many.
 pub(crate) const MAX_NODES: i32 = 16_384;
 
+/// Nodes have no greater numbers: here f32 still knows them and a half.
+pub(crate) const LAST_NODE: f32 = 4_194_304.0;
+
 /// Points that are compared with a cell in one loop.
 const BLOCK: usize = 64;
 
@@ -119,8 +122,7 @@ fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end
     if span.entry > exit {
         return NodeRange::NONE;
     }
-    // Node numbers stay where f32 knows them and a half.
-    let most = R::from_f32(4_194_304.0);
+    let most = R::from_f32(LAST_NODE);
     let first = (span.entry / step - offset).floor().max(R::ZERO).min(most);
     let last = (exit / step - offset).floor().min(most);
     NodeRange { first: first.to_index(), last: last.to_index() }

@@ -18,6 +18,7 @@
 
 use super::Stats;
 use super::camera::{Ray, slab};
+use super::comb::{LAST_NODE, MAX_NODES};
 use super::fields::Batch;
 use super::film::Radiance;
 use super::sampling::sample_ray;
@@ -28,7 +29,7 @@ use crate::interp::Tapes;
 use crate::math::fun::{exp2, log2};
 use crate::real::{Vec3, sub};
 use rayon::prelude::*;
-use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Aabb, Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// Most rays of each stratum: of those that meet media, and of the others.
@@ -123,7 +124,9 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     let tapes = Tapes::new(program);
     let pilot = Pilot::new(frame, &tapes, size);
     let mut rounds: Vec<Round> = Vec::new();
-    let mut step = survey::first_step(frame, &pilot.rays[0], Batch::new(&tapes, frame));
+    let least = least_step(frame);
+    let first = survey::first_step(frame, &pilot.rays[0], Batch::new(&tapes, frame));
+    let mut step = first.max(least);
     loop {
         let (counts, limit) = match rounds.last() {
             None => (pilot.all(), FREE_BUDGET),
@@ -141,12 +144,28 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
         let candidates = pilot.candidates(&rounds);
         let met = rounds.len() > 2 && candidates.iter().any(|form| form.error <= NEARLY * max_error);
         let last = &rounds[rounds.len() - 1];
-        if met || rounds.len() as u32 > MAX_HALVINGS || !last.may_go_on(&candidates, max_error) {
+        let many = rounds.len() as u32 > MAX_HALVINGS || 0.5 * step < least;
+        if met || many || !last.may_go_on(&candidates, max_error) {
             break;
         }
         step *= 0.5;
     }
     pilot.decide(&rounds, step, max_error)
+}
+
+/// The shortest step with which no ray runs out of nodes on its way to the media and through them, in scene units; 0
+/// where they have no bounds, as a ray ends somewhere in any case.
+#[must_use]
+pub fn least_step(frame: &Frame) -> f32 {
+    let boxes = frame.media.iter().map(|medium| medium.bounds);
+    let Some(bounds) = boxes.reduce(|a, b| a.union(&b)).filter(|bounds| bounds.diagonal() < survey::LONGEST)
+    else {
+        return 0.0;
+    };
+    let eye = Aabb { lo: frame.camera.origin, hi: frame.camera.origin };
+    // Boxes are grown by a step to each side.
+    let through = bounds.diagonal() / (MAX_NODES - 8) as f32;
+    through.max(bounds.union(&eye).diagonal() / LAST_NODE)
 }
 
 /// The pilot's rays, in the same places for every step.

@@ -18,7 +18,7 @@ const RAYS: usize = 64;
 const PROBES: usize = 96;
 
 /// A longer way through boxes counts as boundless.
-const LONGEST: f32 = 1e5;
+pub(super) const LONGEST: f32 = 1e5;
 
 /// From the first growing distance to the last.
 const REACH: f32 = 1e9;

@@ -20,6 +20,7 @@ const MAX_SPREAD_TANGENT: f32 = 1.7320508;
 const MAX_STEPS: u32 = 2000u;
 const REFINEMENTS: u32 = 4u;
 const MAX_NODES: i32 = 16384;
+const LAST_NODE: f32 = 4194304.0;
 const SHOWS_NORMALS: f32 = 2.0;
 const BY_STEEPNESS: f32 = 0.0;
 const NO_BOUND: f32 = 1e30;

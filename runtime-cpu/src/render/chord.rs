@@ -20,7 +20,7 @@ use super::scene::Integrator;
 use crate::real::Real;
 
 /// Probes between two nodes.
-const ROUNDS: u32 = 3;
+pub(crate) const ROUNDS: u32 = 3;
 
 /// Part of the distance between two nodes by which they are taken to be outside at least.
 const LEAST: f32 = 1e-6;

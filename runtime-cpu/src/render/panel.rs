@@ -2,7 +2,7 @@
 //! sampled, and how much matter is in each.
 //!
 //! Places are the nodes of the comb inside the medium, the origin and the end of the ray, and the walls
-//! that lie between two nodes, found by false position. In a panel the density is taken to be linear:
+//! that lie between two nodes, found by the Illinois rule. In a panel the density is taken to be linear:
 //! trapezoid. Where it changes its sign, from p > 0 to m < 0, the positive part of the line is
 //! integrated and the error of the trapezoids before it made good (algorithms.md §5.1):
 //!

@@ -45,7 +45,7 @@ use vol_compiler::frame::Sampling;
 pub(super) const STRIDE: [u32; 2] = [3_242_174_889, 2_447_445_414];
 
 /// 2^32 over the golden ratio, rounded.
-const GOLDEN_STRIDE: u32 = 2_654_435_769;
+pub(super) const GOLDEN_STRIDE: u32 = 2_654_435_769;
 
 /// Samples before the first test; odd, see the module.
 pub(super) const FIRST_ROUND: u32 = 9;

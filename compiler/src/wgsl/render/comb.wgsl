@@ -37,8 +37,8 @@ fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> v
     let span = slab(ray, word3(at + 1u) - reach, word3(at + 4u) + reach);
     let leave = min(span.leave, end);
     // Node numbers stay where f32 knows them and a half.
-    let first = min(max(floor((span.entry / step_size) - offset), 0.0), 4194304.0);
-    let last = min(floor((max(leave, 0.0) / step_size) - offset), 4194304.0);
+    let first = min(max(floor((span.entry / step_size) - offset), 0.0), LAST_NODE);
+    let last = min(floor((max(leave, 0.0) / step_size) - offset), LAST_NODE);
     let none = (span.entry > leave) | (vol_input[at] == 0.0);
     return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
 }

@@ -1,7 +1,8 @@
 //! What must not change a picture, and what the pilot and the controls do.
 
 use super::super::{
-    Batches, camera, choose_step, comb, medium, panel, render, render_reference, sampling, shadow, surface,
+    Batches, camera, choose_step, chord, comb, medium, panel, render, render_reference, sampling, shadow,
+    surface,
 };
 use super::support::{World, bits, mixed};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -129,6 +130,7 @@ fn twins_share_their_constants() {
     let text = concat!(
         include_str!("../../../../compiler/src/wgsl/render.wgsl"),
         include_str!("../../../../compiler/src/wgsl/render/sampling.wgsl"),
+        include_str!("../../../../compiler/src/wgsl/render/chord.wgsl"),
         include_str!("../../../../compiler/src/wgsl/render/panel.wgsl")
     );
     let (far, parallel, epsilon, flat) = (camera::FAR, camera::PARALLEL, surface::EPSILON, surface::FLAT);
@@ -144,6 +146,9 @@ fn twins_share_their_constants() {
         format!("MAX_STEPS: u32 = {}u", surface::MAX_STEPS),
         format!("REFINEMENTS: u32 = {}u", surface::REFINEMENTS),
         format!("MAX_NODES: i32 = {}", comb::MAX_NODES),
+        format!("LAST_NODE: f32 = {}.0", comb::LAST_NODE),
+        format!("CHORD_ROUNDS: u32 = {}u", chord::ROUNDS),
+        format!("GOLDEN_STRIDE: u32 = {}u", sampling::GOLDEN_STRIDE),
         format!("WALL_ROUNDS: u32 = {}u", panel::WALL_ROUNDS),
         format!("STRIDE: vec2u = vec2u({}u, {}u)", sampling::STRIDE[0], sampling::STRIDE[1]),
         format!("FIRST_ROUND: u32 = {}u", sampling::FIRST_ROUND),

@@ -151,8 +151,9 @@ fn keeps_its_promise(program: &Program, fine: f32, least: f32) -> Result<(), Fai
     let apart = color_error(&witness, &reference);
     ensure(apart <= 0.5 * f64::from(least), || format!("the reference is only good to {apart:.1e}"))?;
     for max_error in [1e-2, 1e-3, 1e-4].into_iter().filter(|&error| error >= least) {
-        let choice = vol_runtime_cpu::choose_step(program, &frame, SIZE, max_error);
-        let mut picture = render(program, &frame, &choice.job(SIZE, sampling), 2)?;
+        let mut frame = frame.clone();
+        let choice = vol_runtime_cpu::choose(program, &mut frame, SIZE, sampling, max_error);
+        let mut picture = render(program, &frame, &choice.job, 2)?;
         let found = color_error(&picture, &reference);
         ensure(found <= f64::from(max_error), || {
             format!("{found:.1e} instead of {max_error:.0e}: {choice:?}")

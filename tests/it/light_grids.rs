@@ -1,18 +1,22 @@
 //! Grids of optical depth: pictures with and without them, on both backends.
 
 use crate::support::{Body, Draw, compile, ensure, frame, on_both, render};
-use libtest_mimic::Failed;
+use libtest_mimic::{Failed, Trial};
+use vol::compare::color_error;
 use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// The trials of this file.
-pub(crate) fn trials() -> Vec<libtest_mimic::Trial> {
+pub(crate) fn trials() -> Vec<Trial> {
     let bodies: [(&str, Body); 3] = [
         ("sun_through_a_cloud", sun_through_a_cloud),
         ("two_lights_and_a_solid", two_lights_and_a_solid),
         ("lamp_in_a_cloud", lamp_in_a_cloud),
     ];
-    bodies.into_iter().flat_map(|(name, body)| on_both(&format!("light_grids::{name}"), body)).collect()
+    let mut trials: Vec<Trial> =
+        bodies.into_iter().flat_map(|(name, body)| on_both(&format!("light_grids::{name}"), body)).collect();
+    trials.push(Trial::test("light_grids::steps_and_grids_share_what_is_allowed", share_what_is_allowed));
+    trials
 }
 
 /// The camera and background of all scenes.
@@ -43,16 +47,23 @@ fn with_grids(program: &Program, job: &Job) -> Result<Frame, Failed> {
 
 /// Relative rms of the difference of two pictures, and its largest value.
 fn apart(a: &Image, b: &Image) -> (f64, f64) {
-    let (mut changed, mut whole, mut largest) = (0.0, 0.0, 0.0_f64);
-    for (a, b) in a.pixels.iter().zip(&b.pixels) {
-        for (a, b) in a.color.iter().zip(b.color) {
-            let off = f64::from(*a) - f64::from(b);
-            changed += off * off;
-            whole += f64::from(b) * f64::from(b);
-            largest = largest.max(off.abs());
-        }
+    let pairs = a.pixels.iter().zip(&b.pixels).flat_map(|(a, b)| a.color.into_iter().zip(b.color));
+    let largest = pairs.map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
+    (color_error(a, b), largest)
+}
+
+/// The estimate of a picture with a grid is within what was asked for.
+fn share_what_is_allowed() -> Result<(), Failed> {
+    let program =
+        compile("test.vol", &format!("{VIEW}{}light sun {{ from: (-0.35, 0.8, 0.5) }}\n", cloud("0.1")))?;
+    let size = [480, 270];
+    for max_error in [2e-2, 1e-2, 4e-3] {
+        let mut frame = frame(&program, 0.0, size)?;
+        let choice = vol_runtime_cpu::choose(&program, &mut frame, size, Sampling::CENTRE, max_error);
+        ensure(choice.grids[0].grid.is_some(), || format!("no grid for {max_error}"))?;
+        ensure(choice.estimate <= max_error, || format!("{} instead of {max_error}", choice.estimate))?;
     }
-    ((changed / whole).sqrt(), largest)
+    Ok(())
 }
 
 /// Draws a scene whose lights have grids as `wanted` says: like marching to what is allowed, and on both

@@ -225,7 +225,10 @@ pub fn choose(
     sampling: Sampling,
     max_error: f32,
 ) -> Choice {
-    let steps = choose_step(program, frame, size, max_error);
+    // What grids may add is left to them.
+    let shadows = frame.lights.iter().any(|light| light.shadows);
+    let for_steps = if shadows { (1.0 - PART * PART).sqrt() * max_error } else { max_error };
+    let steps = choose_step(program, frame, size, for_steps);
     let job = steps.job(size, sampling);
     let grids = choose_light_grids(program, frame, &job, max_error);
     frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();

@@ -160,10 +160,10 @@ impl Bench<'_> {
     }
 
     /// Renders a setting again and again and keeps the shortest time, with all that depends on the
-    /// setting in it.
+    /// setting in it, but not what a driver does once.
     fn measure(&self, device: &Device, setting: &Setting, reference: &Reference) -> Result<Run, Failure> {
         let renderer = device.prepare(self.program)?;
-        let render = || -> Result<Rendered, Failure> {
+        let prepare = || {
             let mut frame = self.frame.clone();
             let mut choose = |error, sampling| {
                 vol_runtime_cpu::choose(self.program, &mut frame, self.size, sampling, error).job
@@ -178,8 +178,17 @@ impl Bench<'_> {
                     (method, Job { size, step, shadow_step: step, quadrature, sampling })
                 }
             };
+            (method, frame, job)
+        };
+        let render = || -> Result<Rendered, Failure> {
+            let (method, frame, job) = prepare();
             renderer.render_by(method, &frame, &job, &|_| {}, &CANCELLED)
         };
+        if !matches!(device, Device::Cpu) {
+            // Drivers compile shaders when they are first used.
+            let (method, frame, job) = prepare();
+            renderer.render_by(method, &frame, &Job { size: [1, 1], ..job }, &|_| {}, &CANCELLED)?;
+        }
         let started = Instant::now();
         let mut rendered = render()?;
         let mut shortest = started.elapsed();

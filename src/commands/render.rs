@@ -190,7 +190,7 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         && estimate > max_error
     {
         let text = format!("the estimated error {estimate:.1e} is above the {max_error:.1e} asked for");
-        let help = "finding smaller steps would take too many samples; look at the picture, or allow more with --max-error";
+        let help = "smaller steps would take too many samples, or did not help; look at the picture, or allow more with --max-error";
         super::print_message("warning", &Message { text, help: Some(help.to_owned()) });
     }
     let [width, height] = stats.size;

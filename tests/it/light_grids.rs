@@ -1,6 +1,6 @@
 //! Grids of optical depth: pictures with and without them, on both backends.
 
-use crate::support::{Body, Draw, compile, ensure, frame, on_both, render};
+use crate::support::{Body, Draw, compile, compile_file, ensure, examples, frame, on_both, render};
 use libtest_mimic::{Failed, Trial};
 use vol::compare::color_error;
 use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
@@ -52,13 +52,15 @@ fn apart(a: &Image, b: &Image) -> (f64, f64) {
     (color_error(a, b), largest)
 }
 
-/// The estimate of a picture with a grid is within what was asked for.
+/// The estimate of a picture with a grid is within what was asked for; at some of these errors the first step that
+/// is good enough is hardly better.
 fn share_what_is_allowed() -> Result<(), Failed> {
-    let program =
-        compile("test.vol", &format!("{VIEW}{}light sun {{ from: (-0.35, 0.8, 0.5) }}\n", cloud("0.1")))?;
+    let examples = examples();
+    let cloud = examples.iter().find(|(name, _)| name == "cloud_ball").ok_or("the example is missing")?;
+    let program = compile_file(&cloud.1)?;
     let size = [480, 270];
-    for max_error in [2e-2, 1e-2, 4e-3] {
-        let mut frame = frame(&program, 0.0, size)?;
+    for max_error in (0..12).map(|index| 2e-2 * 0.87_f32.powi(index)) {
+        let mut frame = frame(&program, 1.0, size)?;
         let choice = vol_runtime_cpu::choose(&program, &mut frame, size, Sampling::CENTRE, max_error);
         ensure(choice.grids[0].grid.is_some(), || format!("no grid for {max_error}"))?;
         ensure(choice.estimate <= max_error, || format!("{} instead of {max_error}", choice.estimate))?;

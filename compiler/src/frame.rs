@@ -45,6 +45,14 @@ impl Aabb {
     }
 }
 
+impl Frame {
+    /// The box around all media, if there are any.
+    #[must_use]
+    pub fn media_bounds(&self) -> Option<Aabb> {
+        self.media.iter().map(|medium| medium.bounds).reduce(|a, b| a.union(&b))
+    }
+}
+
 /// Everything about one frame of a program. Objects, media and lights that are switched off are
 /// left out, so indices here are not those of the program.
 #[derive(Clone, Debug)]

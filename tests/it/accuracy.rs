@@ -30,7 +30,7 @@ struct Case {
 }
 
 /// Scenes that are hard in different ways.
-const CASES: [Case; 9] = [
+const CASES: [Case; 11] = [
     Case {
         name: "small_cloud_in_a_corner",
         text: "medium m { region: sphere(0.16).translate((1.4, 1, 0)),\n\
@@ -63,6 +63,21 @@ const CASES: [Case; 9] = [
                light l { from: (1, 1, 2), color: 8 }\n\
                camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
         fine: 2e-4,
+        least: 1e-2,
+    },
+    Case {
+        name: "as_dense_as_a_solid",
+        text: "medium m { region: sphere(0.9), density: 1e6, scatter: 0, absorb: 1, emit: (1, 0.5, 0.2) }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 30deg }",
+        fine: 1e-3,
+        least: 1e-3,
+    },
+    Case {
+        name: "box_with_edges",
+        text: "medium m { region: box((0.7, 0.5, 0.6)).rotate_y(30deg).rotate_x(20deg), density: 3, scatter: 0.8, absorb: 0.2 }\n\
+               light l { from: (1, 2, 1), color: 5 }\n\
+               camera { from: (0, 0, 4), at: (0, 0, 0), fov: 40deg }",
+        fine: 1e-3,
         least: 1e-2,
     },
     Case {

@@ -86,17 +86,14 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
         mut gaps: Vec<Gap<F::Real>>,
     ) -> Vec<Chord<F::Real>> {
-        let region = self.scene.media[medium].region;
         let mut chords = Vec::new();
         for round in 0..ROUNDS {
             if gaps.is_empty() {
                 break;
             }
             let probes: Vec<_> = gaps.iter().map(|gap| gap.probe(round)).collect();
-            let point = |(gap, &t): (&Gap<_>, &_)| rays[active[gap.which].ray].at(t);
-            let points = gaps.iter().zip(&probes).map(point).collect();
-            let [values] = self.fields.sample(region, &points);
-            self.stats.region_evaluations += values.len() as u64;
+            let places = gaps.iter().map(|gap| gap.which).zip(probes.iter().copied());
+            let values = self.region_at(medium, rays, active, places);
             let mut left = Vec::new();
             for (gap, (t, value)) in gaps.iter().zip(probes.into_iter().zip(values)) {
                 if value < F::Real::ZERO {

@@ -86,8 +86,7 @@ impl Way {
 /// media, in scene units; of the whole scene where they have no bounds.
 #[must_use]
 pub fn fixed_step_default(frame: &Frame) -> f32 {
-    let around = frame.media.iter().map(|medium| medium.bounds).reduce(|a, b| a.union(&b));
-    let boxes = [around.unwrap_or(frame.bounds), frame.bounds];
+    let boxes = [frame.media_bounds().unwrap_or(frame.bounds), frame.bounds];
     boxes.iter().map(Aabb::diagonal).find(|&size| size > 0.0 && size < 1e5).unwrap_or(1.0) / 96.0
 }
 

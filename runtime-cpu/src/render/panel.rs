@@ -242,6 +242,20 @@ impl<F: Fields> Integrator<'_, F> {
         (places, stretches, crossings)
     }
 
+    /// Signed distances of a medium's region at distances along active rays.
+    pub(super) fn region_at(
+        &mut self,
+        medium: usize,
+        rays: &[Ray<F::Real>],
+        active: &[Cursor],
+        places: impl Iterator<Item = (usize, F::Real)>,
+    ) -> Vec<F::Real> {
+        let points = places.map(|(which, t)| rays[active[which].ray].at(t)).collect();
+        let [values] = self.fields.sample(self.scene.media[medium].region, &points);
+        self.stats.region_evaluations += values.len() as u64;
+        values
+    }
+
     /// Finds the walls.
     fn walls(
         &mut self,
@@ -250,13 +264,10 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
         mut crossings: Vec<Crossing<F::Real>>,
     ) -> Vec<Place<F::Real>> {
-        let region = self.scene.media[medium].region;
         for _ in 0..WALL_ROUNDS {
             let probes: Vec<_> = crossings.iter().map(Crossing::probe).collect();
-            let point = |(crossing, &t): (&Crossing<_>, &_)| rays[active[crossing.which].ray].at(t);
-            let points = crossings.iter().zip(&probes).map(point).collect();
-            let [values] = self.fields.sample(region, &points);
-            self.stats.region_evaluations += values.len() as u64;
+            let places = crossings.iter().map(|crossing| crossing.which).zip(probes.iter().copied());
+            let values = self.region_at(medium, rays, active, places);
             let found = crossings.iter_mut().zip(probes.into_iter().zip(values));
             found.for_each(|(crossing, (t, value))| crossing.narrow(t, value));
         }

@@ -157,9 +157,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
 /// where they have no bounds, as a ray ends somewhere in any case.
 #[must_use]
 pub fn least_step(frame: &Frame) -> f32 {
-    let boxes = frame.media.iter().map(|medium| medium.bounds);
-    let Some(bounds) = boxes.reduce(|a, b| a.union(&b)).filter(|bounds| bounds.diagonal() < survey::LONGEST)
-    else {
+    let Some(bounds) = frame.media_bounds().filter(|bounds| bounds.diagonal() < survey::LONGEST) else {
         return 0.0;
     };
     let eye = Aabb { lo: frame.camera.origin, hi: frame.camera.origin };

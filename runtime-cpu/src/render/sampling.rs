@@ -73,7 +73,7 @@ pub(super) fn place_in_pixel<R: Real>(index: u32) -> [R; 2] {
 
 /// How far the comb of a sample is moved, -1/2..1/2, in steps: a multiple of 2^-16, 0 for the first sample of
 /// the upper left pixel.
-fn comb_shift<R: Real>(pixel: [u32; 2], index: u32) -> R {
+pub(super) fn comb_shift<R: Real>(pixel: [u32; 2], index: u32) -> R {
     let places = pixel[0].wrapping_mul(STRIDE[0]).wrapping_add(pixel[1].wrapping_mul(STRIDE[1]));
     let place = places.wrapping_add(index.wrapping_mul(GOLDEN_STRIDE)).wrapping_add(1 << 31) >> 16;
     R::from_index(place as i32) * R::from_f32(1.0 / 65536.0) - R::from_f32(0.5)

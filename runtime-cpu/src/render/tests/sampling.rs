@@ -1,6 +1,6 @@
 //! The pattern, edges against their exact area, and what adaptive sampling promises.
 
-use super::super::sampling::{LEAST_BRIGHTNESS, place_in_pixel};
+use super::super::sampling::{LEAST_BRIGHTNESS, comb_shift, place_in_pixel};
 use super::super::{Batches, Stats, Watch, render, render_batches, render_reference};
 use super::support::{World, bits, mixed};
 use std::f64::consts::TAU;
@@ -240,4 +240,22 @@ fn a_cancelled_tile_stops_before_its_end() {
         render(&world.program, &world.frame, &job, Some(1), &|_| {}, &cancelled)
     });
     assert!(picture.is_none());
+}
+
+#[test]
+fn combs_of_neighbours_are_moved_apart() {
+    assert_eq!(comb_shift::<f64>([0, 0], 0), 0.0);
+    // In each block of 8x8 pixels, and over 64 samples of a pixel, every sixteenth of a step has its share.
+    let block =
+        |x: u32, y: u32| (0..64).map(|i| comb_shift::<f64>([x + i % 8, y + i / 8], 0)).collect::<Vec<_>>();
+    let samples = (0..64).map(|index| comb_shift([517, 93], index)).collect::<Vec<_>>();
+    for shifts in [block(0, 0), block(100, 37), block(1912, 1072), samples] {
+        let mut counts = [0; 16];
+        for shift in &shifts {
+            assert!((-0.5..0.5).contains(shift), "{shift}");
+            counts[((shift + 0.5) * 16.0) as usize] += 1;
+        }
+        assert!(counts.iter().all(|count| (2..=6).contains(count)), "{counts:?}");
+    }
+    assert_eq!(f64::from(comb_shift::<f32>([517, 93], 5)), comb_shift::<f64>([517, 93], 5));
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use vol_compiler::skip::Skip;
 
 use crate::commands::values::{self, FrameRange, Size};
 
@@ -60,6 +61,10 @@ pub(crate) struct Scene {
     /// Leave out this object or medium; may be given several times
     #[arg(long, value_name = "NAME", conflicts_with = "only")]
     pub(crate) hide: Vec<String>,
+    /// Do not leave out this part of the work, to see that it changes nothing; may be given several times.
+    /// Names and what is left out under each: docs/performance.md
+    #[arg(long, value_name = "NAME", value_parser = values::skip)]
+    pub(crate) no_skip: Vec<Skip>,
 }
 
 /// Arguments of `vol render`.

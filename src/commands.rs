@@ -28,6 +28,7 @@ use vol::output::atomic;
 use vol::session::{Moment, Session};
 use vol_compiler::frame::Frame;
 use vol_compiler::lints;
+use vol_compiler::skip::Skips;
 use vol_language::diag::{self, Diagnostic};
 use vol_language::source::Sources;
 
@@ -100,7 +101,8 @@ struct Prepared {
 
 impl Prepared {
     fn new(arguments: &cli::Scene) -> Result<Self, Failure> {
-        let mut session = load(&arguments.scene)?;
+        let skips = arguments.no_skip.iter().copied().fold(Skips::ALL, Skips::without);
+        let mut session = load(&arguments.scene, skips)?;
         session.restrict(&arguments.only, &arguments.hide)?;
         let params = session.params(&arguments.define)?;
         let moment = session.moment_at(&params, arguments.time.unwrap_or(0.0))?;
@@ -120,8 +122,8 @@ impl Prepared {
 }
 
 /// Loads a scene and shows its warnings.
-fn load(path: &std::path::Path) -> Result<Session, Failure> {
-    let session = vol::session::load(path)?;
+fn load(path: &std::path::Path, skips: Skips) -> Result<Session, Failure> {
+    let session = vol::session::load(path, skips)?;
     print_diagnostics(&session.sources, &session.warnings);
     Ok(session)
 }

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use vol_compiler::frame::{Frame, Sampling};
 use vol_compiler::program::{Field, Program, Slot};
+use vol_compiler::skip::Skips;
 use vol_compiler::{library, lower};
 use vol_language::Analysis;
 use vol_language::blocks::{ADAPTIVE_SAMPLES, MAX_SAMPLES};
@@ -125,20 +126,20 @@ impl Loader for Folder {
     }
 }
 
-/// Reads, checks and compiles a scene.
+/// Reads, checks and compiles a scene; `skips` says what may be left out of the work.
 ///
 /// # Errors
 /// As [`read`], and a scene failure with all the mistakes found.
-pub fn load(path: &Path) -> Result<Session, Failure> {
+pub fn load(path: &Path, skips: Skips) -> Result<Session, Failure> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    compile(read(path)?, &Folder(folder))
+    compile(read(path)?, &Folder(folder), skips)
 }
 
 /// Checks and compiles a scene text.
 ///
 /// # Errors
 /// A scene failure with all the mistakes found.
-pub fn compile(file: SourceFile, loader: &dyn Loader) -> Result<Session, Failure> {
+pub fn compile(file: SourceFile, loader: &dyn Loader, skips: Skips) -> Result<Session, Failure> {
     let started = Instant::now();
     let Analysis { scene, mut diagnostics, sources } =
         vol_language::analyse_with(file, &library::library(), loader);
@@ -147,7 +148,7 @@ pub fn compile(file: SourceFile, loader: &dyn Loader) -> Result<Session, Failure
         return Err(Failure::Scene { sources: Box::new(sources), diagnostics });
     };
     let started = Instant::now();
-    let (program, found) = lower::compile(&scene);
+    let (program, found) = lower::compile_with(&scene, skips);
     let compile_time = started.elapsed();
     diagnostics.extend(found);
     match program {

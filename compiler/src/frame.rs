@@ -14,6 +14,7 @@ use crate::curve::{self, CurveTable, Quadratic};
 use crate::ir::FunctionId;
 use crate::program::{LightKind, Lighting, Program, Slot, Slot3, TubeSizes};
 use crate::reference;
+use crate::skip::{Skip, Skips};
 use extent::{Solid, Space};
 use glam::DVec3;
 use std::sync::Arc;
@@ -80,6 +81,8 @@ pub struct Frame {
     pub background: [f32; 3],
     /// Box around all bounded objects and media; what the default camera frames.
     pub bounds: Aabb,
+    /// What may be left out of the work.
+    pub skips: Skips,
 }
 
 /// Eye and picture plane: the ray through `(u, v)` in [-1, 1], v up, is
@@ -346,7 +349,11 @@ impl Program {
         for (index, medium) in self.media.iter().enumerate().filter(|(_, medium)| on(medium.enabled)) {
             let solid = space.solid(&medium.extent)?;
             bounds = extent::enclose_finite(bounds, solid.bounds);
-            media.push(medium_frame(index, medium, solid));
+            let mut medium = medium_frame(index, medium, solid);
+            if !self.skips.has(Skip::Cells) {
+                medium.cells.clear();
+            }
+            media.push(medium);
         }
         let lights = self.lights.iter().filter(|light| on(light.enabled));
         let lights = lights.map(|light| LightFrame {
@@ -380,6 +387,7 @@ impl Program {
             media,
             lights,
             light_grids: Vec::new(),
+            skips: self.skips,
         })
     }
 }
@@ -401,7 +409,7 @@ impl Program {
         let mut uniforms = evaluate(&inputs);
         let curves: Vec<Vec<Quadratic>> =
             self.curves.iter().map(|curve| control_points(curve, &uniforms)).collect();
-        let tables: Vec<CurveTable> = curves.iter().map(|segments| curve::prepare(segments)).collect();
+        let tables: Vec<CurveTable> = curves.iter().map(|segments| self.table(segments)).collect();
         let space =
             Space { module: &self.module, uniforms: &uniforms, curves: &curves, tables: &tables, tubes: &[] };
         let tubes: Vec<tube::Measured> = self.tubes.iter().map(|sizes| space.measure_tube(sizes)).collect();
@@ -423,6 +431,14 @@ impl Program {
             uniforms = evaluate(&inputs);
         }
         Ok(Known { uniforms, curves, curve_tables: tables, tubes })
+    }
+
+    fn table(&self, segments: &[Quadratic]) -> CurveTable {
+        let mut table = curve::prepare(segments);
+        if !self.skips.has(Skip::CurveBoxes) {
+            table.nodes.clear();
+        }
+        table
     }
 }
 

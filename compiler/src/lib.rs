@@ -21,5 +21,6 @@ pub mod ops;
 pub mod passes;
 pub mod program;
 pub mod reference;
+pub mod skip;
 pub mod tape;
 pub mod wgsl;

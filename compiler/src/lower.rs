@@ -28,6 +28,7 @@ use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
+use crate::skip::Skips;
 use std::collections::{HashMap, HashSet};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
@@ -73,7 +74,14 @@ pub(crate) type Lowered<T> = Result<T, Box<Diagnostic>>;
 /// ```
 #[must_use]
 pub fn compile(scene: &hir::Scene) -> (Option<Program>, Vec<Diagnostic>) {
+    compile_with(scene, Skips::ALL)
+}
+
+/// [`compile`] with some ways of leaving work out switched off, here and in what renders the program.
+#[must_use]
+pub fn compile_with(scene: &hir::Scene, skips: Skips) -> (Option<Program>, Vec<Diagnostic>) {
     let mut lowerer = Lowerer::new(scene);
+    lowerer.skips = skips;
     let plan = scene::plan(&mut lowerer);
     let failed = lowerer.diagnostics.iter().any(Diagnostic::is_error);
     let program = (!failed).then(|| plan.map(|plan| lowerer.finish(plan))).flatten();
@@ -109,6 +117,7 @@ pub(crate) struct Lowerer<'a> {
     loop_steps: u32,
     depth: u32,
     diagnostics: Vec<Diagnostic>,
+    skips: Skips,
 }
 
 impl<'a> Lowerer<'a> {
@@ -141,6 +150,7 @@ impl<'a> Lowerer<'a> {
             loop_steps: 1,
             depth: 0,
             diagnostics: Vec::new(),
+            skips: Skips::ALL,
         }
     }
 
@@ -247,6 +257,7 @@ impl<'a> Lowerer<'a> {
             fields: plan.fields,
             report: plan.report,
             origins: std::mem::take(&mut self.origins),
+            skips: self.skips,
             module,
         }
     }

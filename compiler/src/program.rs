@@ -6,6 +6,7 @@
 
 use crate::ir::origin::Origins;
 use crate::ir::{FunctionId, Module};
+use crate::skip::Skips;
 use vol_language::source::Span;
 use vol_language::ty::Type;
 
@@ -50,6 +51,8 @@ pub struct Program {
     pub report: Vec<String>,
     /// Where the instructions of each function come from, by its index.
     pub origins: Vec<Origins>,
+    /// What may be left out of the work.
+    pub skips: Skips,
 }
 
 /// A param and where its components enter the frame function.

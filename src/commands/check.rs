@@ -8,6 +8,7 @@ use vol::output::atomic;
 use vol::session::{self, Session};
 use vol_compiler::lints;
 use vol_compiler::program::Program;
+use vol_compiler::skip::Skips;
 use vol_language::diag::{self, Diagnostic, Fix, apply_all};
 use vol_language::source::Sources;
 
@@ -33,7 +34,9 @@ pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
 /// Makes the repairs of errors in the scene's own file. Warnings are left to the author: an unused name
 /// may well be the wrong one of two.
 fn repair(path: &Path) -> Result<(), Failure> {
-    let Err(Failure::Scene { sources, diagnostics }) = session::load(path).and_then(with_first_frame) else {
+    let Err(Failure::Scene { sources, diagnostics }) =
+        session::load(path, Skips::ALL).and_then(with_first_frame)
+    else {
         return Ok(());
     };
     let root = sources.root();
@@ -53,7 +56,7 @@ fn repair(path: &Path) -> Result<(), Failure> {
 }
 
 fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {
-    match session::load(path).and_then(with_first_frame) {
+    match session::load(path, Skips::ALL).and_then(with_first_frame) {
         Ok(session) => {
             report(&session.sources, &session.warnings, format)?;
             if format == MessageFormat::Human {

@@ -5,6 +5,7 @@ use std::io::{self, Write as _};
 use vol::failure::Failure;
 use vol::output::atomic;
 use vol_compiler::frame::Quadrature;
+use vol_compiler::skip::Skips;
 use vol_compiler::wgsl;
 
 use crate::cli;
@@ -13,7 +14,7 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     if let Some(path) = &arguments.output {
         atomic::probe(path)?;
     }
-    let session = super::load(&arguments.scene)?;
+    let session = super::load(&arguments.scene, Skips::ALL)?;
     let text = match arguments.target {
         cli::Target::Wgsl => wgsl::render::render_module(&session.program, Quadrature::Midpoint),
     };

@@ -6,12 +6,13 @@ use serde::Serialize;
 use vol::failure::Failure;
 use vol::session::written;
 use vol_compiler::program::Param;
+use vol_compiler::skip::Skips;
 
 use crate::cli::{self, MessageFormat};
 
 /// Lists the params of a scene on standard output.
 pub(super) fn run(arguments: &cli::Params) -> Result<(), Failure> {
-    let session = super::load(&arguments.scene)?;
+    let session = super::load(&arguments.scene, Skips::ALL)?;
     let params = &session.program.params;
     let text = match arguments.message_format {
         MessageFormat::Human => params.iter().map(line).collect(),

@@ -1,5 +1,6 @@
 //! Argument values: from the text typed to numbers in range, or a sentence that says what is wrong.
 
+use vol_compiler::skip::{self, Skip};
 use vol_language::blocks::MAX_SAMPLES;
 
 /// Largest width and height of a picture.
@@ -54,6 +55,15 @@ pub(crate) fn frames(text: &str) -> Result<FrameRange, String> {
         return Err("the last frame is before the first".to_owned());
     }
     Ok(FrameRange { first, last })
+}
+
+/// `octaves`
+pub(crate) fn skip(text: &str) -> Result<Skip, String> {
+    let named = skip::TABLE.iter().find(|row| row.name == text).map(|row| row.skip);
+    named.ok_or_else(|| {
+        let names: Vec<_> = skip::TABLE.iter().map(|row| row.name).collect();
+        format!("nothing is left out under that name; the names are: {}", names.join(", "))
+    })
 }
 
 /// `name=value`

@@ -32,6 +32,7 @@ mod properties;
 mod reference_modes;
 mod sampling;
 mod shapes;
+mod skips;
 mod solid;
 mod spec;
 mod stress;
@@ -71,6 +72,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(reference_modes::trials());
     trials.extend(sampling::trials());
     trials.extend(shapes::trials());
+    trials.extend(skips::trials());
     trials.extend(surfaces::trials());
     trials.extend(spec::trials());
     trials.extend(stress::trials());

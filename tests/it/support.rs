@@ -7,6 +7,7 @@ use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
 pub(crate) use vol_compiler::ir::verify::random::Random;
 use vol_compiler::ir::{Function, FunctionId, Module};
 use vol_compiler::program::Program;
+use vol_compiler::skip::Skips;
 use vol_language::Analysis;
 use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
@@ -42,6 +43,14 @@ pub(crate) fn compile(name: &str, text: &str) -> Result<Program, Failed> {
 pub(crate) fn compile_with_messages(name: &str, text: &str) -> (Option<Program>, String) {
     let Diagnosed { program, diagnostics, sources } = diagnose(SourceFile::new(name, text));
     (program, vol_language::diag::render::human(&sources, &diagnostics, false))
+}
+
+/// Compiles a correct scene text with some ways of leaving work out switched off.
+pub(crate) fn compile_without(text: &str, skips: Skips) -> Result<Program, Failed> {
+    let file = SourceFile::new("test.vol", text);
+    let Analysis { scene, .. } = vol_language::analyse_with(file, &vol_compiler::library::library(), &Shared);
+    let program = scene.and_then(|scene| vol_compiler::lower::compile_with(&scene, skips).0);
+    program.ok_or_else(|| "the scene does not compile".into())
 }
 
 /// A scene as far as it goes, and what there is to say about it.

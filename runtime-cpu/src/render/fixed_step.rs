@@ -9,7 +9,7 @@
 //!
 //! What it lacks against the comb is meant to be lacking: no walls (a sample stands for all of its step, inside
 //! or not), no energy-conserving step, and the samples move with the box. Surfaces, several media, phase
-//! functions and lights are as in the comb, as are the end of a ray ([`STOP`]) and of a shadow ([`OPAQUE`]).
+//! functions and lights are as in the comb, as are the end of a ray (`stop` of the scene) and of a shadow (`opaque`).
 //!
 //! With `--tube-bounds sphere-march` the ray walks by distances until it is inside a medium, then in even
 //! steps until a sample is outside, and so on (Moinet 2022, section 3): see [`super::tube_axis`].
@@ -18,10 +18,9 @@ use super::camera::{Ray, slab};
 use super::comb::MAX_NODES;
 use super::fields::{Fields, Points};
 use super::matter::{Part, Place};
-use super::medium::{Glow, STOP};
+use super::medium::Glow;
 use super::random::{Purpose, Stream};
 use super::scene::Integrator;
-use super::shadow::OPAQUE;
 use super::tube_axis::TubeAxis;
 use crate::real::{Real, Vec3, add, largest, mul, scale, smallest, splat};
 
@@ -98,7 +97,7 @@ impl<F: Fields> Integrator<'_, F> {
         while !marches.is_empty() {
             let round = self.next_round(rays, &mut marches, axes);
             self.add_samples(rays, &round, &mut glows);
-            let open = |ray: usize| largest(glows[ray].transmittance) >= F::Real::from_f32(STOP);
+            let open = |ray: usize| largest(glows[ray].transmittance) >= self.scene.stop;
             marches.retain(|march| march.goes_on() && open(march.ray));
         }
         glows
@@ -122,7 +121,7 @@ impl<F: Fields> Integrator<'_, F> {
                     depths[ray] = add(depths[ray], scale(extinction, length));
                 }
             }
-            let open = |ray: usize| smallest(depths[ray]) <= F::Real::from_f32(OPAQUE);
+            let open = |ray: usize| smallest(depths[ray]) <= self.scene.opaque;
             marches.retain(|march| march.goes_on() && open(march.ray));
         }
         depths

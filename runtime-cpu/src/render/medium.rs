@@ -84,7 +84,7 @@ impl<F: Fields> Integrator<'_, F> {
                 break;
             }
             // Go on with the rays that still let light through.
-            let stop = F::Real::from_f32(STOP);
+            let stop = self.scene.stop;
             active.retain_mut(|cursor| {
                 cursor.node += self.batches.nodes;
                 let open = largest(glows[cursor.ray].transmittance) >= stop;
@@ -161,7 +161,7 @@ impl<F: Fields> Integrator<'_, F> {
         for (which, cursor) in active.iter().enumerate() {
             let mut transmittance = glows[cursor.ray].transmittance;
             for slot in which * nodes..(which + 1) * nodes {
-                if largest(transmittance) < F::Real::from_f32(STOP) {
+                if largest(transmittance) < self.scene.stop {
                     break;
                 }
                 chunk.arriving[slot] = Some(transmittance);

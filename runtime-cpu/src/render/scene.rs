@@ -2,12 +2,15 @@
 
 use super::fields::Fields;
 use super::light_grid::Grid;
+use super::medium::STOP;
 use super::method::Way;
+use super::shadow::OPAQUE;
 use crate::real::{Real, Vec3, length, vector};
 use std::sync::atomic::{AtomicU64, Ordering};
 use vol_compiler::frame::{Frame, Job, Quadrature};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Lighting;
+use vol_compiler::skip::Skip;
 use vol_compiler::wgsl::render::{padded, padded_cells};
 
 /// What the integrator knows of a frame.
@@ -31,6 +34,10 @@ pub(crate) struct Scene<R> {
     pub(crate) grids: Vec<Option<Grid<R>>>,
     /// Radiance where nothing is hit.
     pub(crate) background: Vec3<R>,
+    /// Rays end where less than this of the light arrives, [`STOP`] or 0.
+    pub(crate) stop: R,
+    /// Optical depth from which on no light arrives, [`OPAQUE`] or infinite.
+    pub(crate) opaque: R,
     /// Distance between nodes along camera rays.
     pub(crate) step: R,
     /// Distance between nodes along shadow rays.
@@ -134,6 +141,8 @@ impl<R: Real> Scene<R> {
             lights: lights.collect(),
             grids: frame.light_grids.iter().map(|grid| grid.as_ref().map(Grid::new)).collect(),
             background: vector(frame.background),
+            stop: R::from_f32(if frame.skips.has(Skip::Opaque) { STOP } else { 0.0 }),
+            opaque: R::from_f32(if frame.skips.has(Skip::Opaque) { OPAQUE } else { f32::INFINITY }),
             step: R::from_f32(job.step),
             shadow_step: R::from_f32(job.shadow_step),
             way: Way::Comb,

@@ -87,7 +87,7 @@ impl<F: Fields> Integrator<'_, F> {
             let paths: Vec<_> = free.iter().map(|&ray| batch[ray].ray).collect();
             let ends: Vec<_> = free.iter().map(|&ray| batch[ray].length).collect();
             for (ray, depth) in free.into_iter().zip(self.depth_towards(light, &paths, &ends)) {
-                let dark = smallest(depth) > F::Real::from_f32(OPAQUE);
+                let dark = smallest(depth) > self.scene.opaque;
                 let weakened = scale(depth.map(Real::decay), parts[ray]);
                 seen[ray] = if dark { splat(F::Real::ZERO) } else { weakened };
             }
@@ -166,7 +166,7 @@ impl<F: Fields> Integrator<'_, F> {
             // Go on with the rays that are not dark yet.
             active.retain_mut(|cursor| {
                 cursor.node += nodes;
-                let dark = smallest(depths[cursor.ray]) > F::Real::from_f32(OPAQUE);
+                let dark = smallest(depths[cursor.ray]) > self.scene.opaque;
                 !dark && cursor.node <= combs.whole[cursor.ray].last
             });
         }

@@ -9,6 +9,7 @@ use vol_compiler::frame::{
 use vol_compiler::ir::{Function, FunctionId, Inst, Module, Number, ValueId};
 use vol_compiler::ops::Op;
 use vol_compiler::program::{Camera, Extent, Lighting, Medium, Object, Program, Render, Slot};
+use vol_compiler::skip::Skips;
 
 /// A function in the making.
 pub(super) struct Body {
@@ -173,6 +174,7 @@ impl World {
             fields: Vec::new(),
             report: Vec::new(),
             origins: Vec::new(),
+            skips: Skips::ALL,
         };
         let frame = Frame {
             uniforms: Vec::new(),
@@ -191,6 +193,7 @@ impl World {
             light_grids: Vec::new(),
             background: [0.0; 3],
             bounds: Aabb { lo: [-1.0; 3], hi: [1.0; 3] },
+            skips: Skips::ALL,
         };
         Self { program, frame, quadrature: Quadrature::Midpoint }
     }

@@ -1,0 +1,98 @@
+//! What is left out of the work because it cannot change the picture.
+//!
+//! Every way of leaving work out has a name here and can be switched off (`--no-skip NAME`), so that a test
+//! can show that the picture stays the same. A [`Program`](crate::program::Program) carries the set that it was
+//! compiled with, and hands it to each of its frames.
+
+/// A way of leaving work out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Skip {
+    /// The region of a medium is not asked far from the boxes along its tubes.
+    Cells,
+    /// Closest points are not looked for in boxes along the curve that are farther than what was found.
+    CurveBoxes,
+    /// A ray ends where less than 2^-16 of the light arrives.
+    Opaque,
+}
+
+/// A name, and what is left out under it.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Which one.
+    pub skip: Skip,
+    /// As on the command line.
+    pub name: &'static str,
+    /// One sentence for people, with the bound on what it changes.
+    pub about: &'static str,
+}
+
+/// All of them.
+pub const TABLE: &[Row] = &[
+    Row {
+        skip: Skip::Cells,
+        name: "cells",
+        about: "regions of media are not evaluated far from the boxes along their tubes; changes nothing",
+    },
+    Row {
+        skip: Skip::CurveBoxes,
+        name: "curve-boxes",
+        about: "pieces of long curves are passed over that are farther than one already found; changes nothing",
+    },
+    Row {
+        skip: Skip::Opaque,
+        name: "opaque",
+        about: "rays end where media let less than 2^-16 through; changes a pixel by at most that part of what lies behind",
+    },
+];
+
+/// A set of ways of leaving work out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Skips(u32);
+
+impl Skips {
+    /// Every one: what pictures are made with.
+    pub const ALL: Self = Self(u32::MAX);
+    /// None: everything is computed.
+    pub const NONE: Self = Self(0);
+
+    /// The same without one.
+    #[must_use]
+    pub const fn without(self, skip: Skip) -> Self {
+        Self(self.0 & !(1 << skip as u32))
+    }
+
+    /// Whether work may be left out in this way.
+    #[must_use]
+    pub const fn has(self, skip: Skip) -> bool {
+        self.0 & (1 << skip as u32) != 0
+    }
+}
+
+impl Default for Skips {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_in_order_and_names_differ() {
+        for (index, row) in TABLE.iter().enumerate() {
+            assert_eq!(row.skip as usize, index);
+            assert!(TABLE[..index].iter().all(|other| other.name != row.name), "{}", row.name);
+        }
+        assert!(TABLE.len() <= 32);
+    }
+
+    #[test]
+    fn one_is_switched_off_at_a_time() {
+        for row in TABLE {
+            let skips = Skips::ALL.without(row.skip);
+            assert!(TABLE.iter().all(|other| skips.has(other.skip) == (other.skip != row.skip)));
+            assert!(!Skips::NONE.has(row.skip));
+        }
+    }
+}

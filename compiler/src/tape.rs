@@ -78,6 +78,8 @@ pub enum TapeOp {
         to: Register,
         /// Registers of the operands; entries past their number mean nothing.
         args: [Register; MAX_OPERANDS],
+        /// Which results are read, one bit each from the lowest on; others need not be computed.
+        wanted: u8,
     },
     /// A loop.
     Loop {
@@ -183,8 +185,8 @@ mod tests {
         }
     }
 
-    /// The same from the tape. Registers start empty, or with the inputs of a loop's body; results past
-    /// the last free or unread ones are written all the same, so that a clobbered register shows.
+    /// The same from the tape. Registers start empty, or with the inputs of a loop's body; those of results that
+    /// nothing reads are emptied, so that a clobbered register shows.
     fn by_tape(tape: &Tape, inputs: &[f64], inside: bool) -> Vec<f64> {
         let mut registers: Vec<Option<f64>> = vec![None; tape.registers as usize];
         if inside {
@@ -196,12 +198,12 @@ mod tests {
                 TapeOp::Constant { to, value } => registers[to.index()] = Some(f64::from(value)),
                 TapeOp::Input { to, index } => registers[to.index()] = Some(inputs[index as usize]),
                 TapeOp::Uniform { to, index } => registers[to.index()] = Some(UNIFORMS[index as usize]),
-                TapeOp::Apply { op, data, to, args } => {
+                TapeOp::Apply { op, data, to, args, wanted } => {
                     let row = ops::operation(op);
                     let args: Vec<f64> = args[..row.args.len()].iter().map(read).collect();
                     let results = (row.meaning)(&args, Context { data, curves: &[] });
                     for (i, _) in row.results.iter().enumerate() {
-                        registers[to.index() + i] = Some(results[i]);
+                        registers[to.index() + i] = (wanted >> i & 1 == 1).then_some(results[i]);
                     }
                 }
                 TapeOp::Loop { index, to } => {

@@ -88,6 +88,11 @@ impl<'a> Evaluator<'a> {
         Self { tapes, uniforms, curves, registers, results: Box::new(array::from_fn(|_| Lanes::default())) }
     }
 
+    /// The vector instructions that it uses.
+    pub(crate) fn isa(&self) -> Isa {
+        self.tapes.isa
+    }
+
     /// Evaluates a function at as many points as the slices are long.
     ///
     /// `inputs` has one slice per argument, `outputs` one per output (or fewer: the first ones).
@@ -127,11 +132,13 @@ impl<'a> Evaluator<'a> {
             let Some((step, after)) = rest[done..].split_first() else { return };
             rest = after;
             match *step {
-                TapeOp::Apply { op, data, to, args } => {
+                TapeOp::Apply { op, data, to, args, wanted } => {
                     let args = args.map(|register| &self.registers[at(register)].0[..n]);
-                    let context = Context { isa: self.tapes.isa, curves: self.curves };
+                    let context = Context { isa: self.tapes.isa, curves: self.curves, wanted };
                     let written = batch::apply(op, data, &args, &mut self.results, context);
-                    self.registers[at(to)..at(to) + written].clone_from_slice(&self.results[..written]);
+                    for result in (0..written).filter(|result| wanted >> result & 1 == 1) {
+                        self.registers[at(to) + result].0[..n].copy_from_slice(&self.results[result].0[..n]);
+                    }
                 }
                 TapeOp::Loop { index, to } => {
                     let repeated = &tape.loops[index as usize];

@@ -22,6 +22,7 @@
 //! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
 
 mod camera;
+mod cells;
 mod chord;
 mod comb;
 mod corrected;

@@ -121,7 +121,9 @@ impl<'a> Scan<'a> {
                 let mut args = [Register(0); MAX_OPERANDS];
                 args[..registers.len()].copy_from_slice(&registers);
                 let to = self.results(i);
-                self.ops.push(TapeOp::Apply { op: *op, data: *data, to, args });
+                let read = self.cells.of(i).enumerate().filter(|&(_, cell)| self.last_use[cell].is_some());
+                let wanted = read.fold(0, |wanted, (result, _)| wanted | 1 << result);
+                self.ops.push(TapeOp::Apply { op: *op, data: *data, to, args, wanted });
             }
             Inst::Loop { most, body, args } => {
                 let args = self.operands(i, args);

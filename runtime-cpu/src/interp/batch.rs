@@ -120,6 +120,8 @@ type Out = [Lanes; MAX_RESULTS];
 pub(crate) struct Context<'a> {
     pub(crate) isa: Isa,
     pub(crate) curves: &'a [CurveTable],
+    /// Results that are read, one bit each.
+    pub(crate) wanted: u8,
 }
 
 /// Applies an operation that is a function of its own to all lanes of its operands; returns how many results were
@@ -129,7 +131,7 @@ pub(crate) fn apply(
     data: u32,
     x: &Operands<'_>,
     out: &mut Out,
-    Context { isa, curves }: Context<'_>,
+    Context { isa, curves, wanted }: Context<'_>,
 ) -> usize {
     match op {
         Op::Sin => isa.run::<Sin>((x[0], out)),
@@ -151,7 +153,7 @@ pub(crate) fn apply(
         Op::Worley => isa.run::<noise::Worley<1>>((x, out, data)),
         Op::WorleyGradient => isa.run::<noise::Worley<4>>((x, out, data)),
         Op::Hash => isa.run::<noise::Hash>((x, out, data)),
-        Op::Closest => curve::closest(isa, x, out, curve_parts(curves, data)),
+        Op::Closest => curve::closest(isa, x, out, curve_parts(curves, data), wanted),
         Op::ClosestGradient => curve::closest_gradient(isa, x, out, curve_parts(curves, data)),
         Op::Foot => curve::next_foot(x, out, curve_parts(curves, data)),
         // All others are of a few instructions.

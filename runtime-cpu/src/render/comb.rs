@@ -9,15 +9,15 @@
 //! order at hard walls, at the ray's origin and at its end. Parts between two outside nodes are
 //! lost: what is thinner than a step may be missed.
 //!
-//! The region of a medium is evaluated only at nodes within a step of one of its cells: all others
-//! are outside, and so are their neighbours, so no weight asks for their distances.
+//! The region of a medium is evaluated only at nodes within a step of one of its cells, and beside those: all
+//! others are outside, and so are their neighbours, so no weight asks for their distances.
 //!
 //! Twin: `compiler/src/wgsl/render/comb.wgsl`.
 
-use super::camera::{FAR, Ray, slab};
+use super::camera::{Ray, Span, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Integrator, Medium};
-use crate::real::{Real, Vec3, add, splat, sub};
+use crate::real::{Real, add, splat, sub};
 use vol_compiler::frame::Quadrature;
 
 /// Most nodes of one ray: a medium without bounds ends after so many.
@@ -25,9 +25,6 @@ pub(crate) const MAX_NODES: i32 = 16_384;
 
 /// Nodes have no greater numbers: here f32 still knows them and a half.
 pub(crate) const LAST_NODE: f32 = 4_194_304.0;
-
-/// Points that are compared with a cell in one loop.
-const BLOCK: usize = 64;
 
 /// Nodes `first..=last` of a comb; none if `first > last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +51,36 @@ impl NodeRange {
     }
 }
 
+/// Ranges of nodes of many rays, in order along each, apart from one another.
+#[derive(Default)]
+struct Runs {
+    all: Vec<NodeRange>,
+    /// Where those of each ray end.
+    ends: Vec<usize>,
+}
+
+impl Runs {
+    /// Adds a ray with its ranges in any order.
+    fn push(&mut self, mut ranges: Vec<NodeRange>) {
+        ranges.retain(|range| range.first <= range.last);
+        ranges.sort_unstable_by_key(|range| range.first);
+        let start = self.all.len();
+        for range in ranges {
+            match self.all[start..].last_mut() {
+                // A node beside each range is looked at as well.
+                Some(last) if range.first <= last.last + 2 => last.last = last.last.max(range.last),
+                _ => self.all.push(range),
+            }
+        }
+        self.ends.push(self.all.len());
+    }
+
+    fn of(&self, ray: usize) -> &[NodeRange] {
+        let start = ray.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.all[start..self.ends[ray]]
+    }
+}
+
 /// How far a ray has been sampled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor {
@@ -70,9 +97,9 @@ pub(crate) struct Combs<'a, R> {
     offsets: Vec<R>,
     pub(super) ends: &'a [R],
     /// Nodes that may be inside, per medium and ray; of panels the first node of each.
-    pub(super) ranges: Vec<Vec<NodeRange>>,
-    /// Nodes that may be inside some medium, per ray.
-    pub(crate) whole: Vec<NodeRange>,
+    runs: Vec<Runs>,
+    /// From the first to the last node that may be inside some medium, per ray.
+    whole: Vec<NodeRange>,
 }
 
 impl<R: Real> Combs<'_, R> {
@@ -85,6 +112,32 @@ impl<R: Real> Combs<'_, R> {
     pub(crate) fn active(&self) -> Vec<Cursor> {
         let rays = self.whole.iter().enumerate().filter(|(_, whole)| whole.first <= whole.last);
         rays.map(|(ray, whole)| Cursor { ray, node: whole.first }).collect()
+    }
+
+    /// Goes on by a number of nodes and to the next one that may be inside a medium; whether there is one.
+    pub(super) fn advance(&self, cursor: &mut Cursor, nodes: i32) -> bool {
+        let node = cursor.node + nodes;
+        let next = |runs: &Runs| {
+            let runs = runs.of(cursor.ray);
+            let next = runs.get(runs.partition_point(|run| run.last < node))?;
+            Some(next.first.max(node))
+        };
+        cursor.node = self.runs.iter().filter_map(next).min().unwrap_or(i32::MAX);
+        cursor.node <= self.whole[cursor.ray].last
+    }
+
+    /// Those of the next `nodes` that may be inside a medium.
+    pub(super) fn runs(
+        &self,
+        medium: usize,
+        cursor: &Cursor,
+        nodes: i32,
+    ) -> impl Iterator<Item = NodeRange> + use<'_, R> {
+        let (first, last) = (cursor.node, self.whole[cursor.ray].last.min(cursor.node + nodes - 1));
+        let runs = self.runs[medium].of(cursor.ray);
+        let near = &runs[runs.partition_point(|run| run.last < first)..];
+        let near = near.iter().take_while(move |run| run.first <= last);
+        near.map(move |run| NodeRange { first: run.first.max(first), last: run.last.min(last) })
     }
 }
 
@@ -113,19 +166,25 @@ fn node_distance<R: Real>(node: i32, step: R, offset: R) -> R {
     (R::from_index(node) + offset) * step
 }
 
-/// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-/// inside are in the range or next to it, and so are the panels on both sides.
-fn node_range<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end: R) -> NodeRange {
-    let reach = splat(R::from_f32(1.01) * step);
-    let span = slab(ray, sub(medium.lo, reach), add(medium.hi, reach));
-    let exit = span.exit.min(end);
-    if span.entry > exit {
-        return NodeRange::NONE;
-    }
+/// Nodes that may be inside a medium. Boxes are grown by a step, so that the neighbours of a node
+/// inside are in a range or next to it, and so are the panels on both sides.
+fn node_ranges<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end: R) -> Vec<NodeRange> {
+    let reach = R::from_f32(1.01) * step;
     let most = R::from_f32(LAST_NODE);
-    let first = (span.entry / step - offset).floor().max(R::ZERO).min(most);
-    let last = (exit / step - offset).floor().min(most);
-    NodeRange { first: first.to_index(), last: last.to_index() }
+    let node = |t: R| (t / step - offset).floor().min(most);
+    let range = |span: Span<R>| NodeRange {
+        first: node(span.entry).max(R::ZERO).to_index(),
+        last: node(span.exit.min(end)).to_index(),
+    };
+    let whole = slab(ray, sub(medium.lo, splat(reach)), add(medium.hi, splat(reach)));
+    if whole.entry > whole.exit.min(end) {
+        return Vec::new();
+    }
+    if medium.cells.is_empty() {
+        return vec![range(whole)];
+    }
+    let within = |span: Span<R>| Span { entry: span.entry.max(whole.entry), exit: span.exit.min(whole.exit) };
+    medium.cells.spans(ray, reach, end).into_iter().map(within).map(range).collect()
 }
 
 /// Part of the interval between two neighbouring nodes that the first stands for, given the signed
@@ -145,40 +204,27 @@ impl<F: Fields> Integrator<'_, F> {
         let offset = |ray: &Ray<F::Real>| first_node(self.scene.quadrature, ray.shift);
         let offsets: Vec<F::Real> = rays.iter().map(offset).collect();
         let mut whole = vec![NodeRange::NONE; rays.len()];
-        let mut ranges = Vec::with_capacity(self.scene.media.len());
+        let mut runs = Vec::with_capacity(self.scene.media.len());
         for medium in &self.scene.media {
-            let range = |((ray, &offset), &end)| node_range(ray, medium, step, offset, end);
-            let own: Vec<NodeRange> = rays.iter().zip(&offsets).zip(ends).map(range).collect();
-            whole.iter_mut().zip(&own).for_each(|(whole, &own)| *whole = whole.union(own));
-            ranges.push(own);
+            let mut own = Runs::default();
+            for (ray, ((path, &offset), &end)) in rays.iter().zip(&offsets).zip(ends).enumerate() {
+                own.push(node_ranges(path, medium, step, offset, end));
+                if let [first, .., last] | [first @ last] = own.of(ray) {
+                    whole[ray] = whole[ray].union(NodeRange { first: first.first, last: last.last });
+                }
+            }
+            runs.push(own);
         }
         for range in &mut whole {
             range.last = range.last.min(range.first + MAX_NODES - 1);
         }
-        Combs { step, offsets, ends, ranges, whole }
+        Combs { step, offsets, ends, runs, whole }
     }
 
-    /// Signed distances of one medium's region; [`FAR`] where neither the point nor one within a step
-    /// of it is inside.
-    pub(super) fn region(&mut self, medium: usize, points: &Points<F::Real>, step: F::Real) -> Vec<F::Real> {
-        let medium = &self.scene.media[medium];
-        if medium.cells.is_empty() {
-            self.stats.region_evaluations += points.len() as u64;
-            let [region] = self.fields.sample(medium.region, points);
-            return region;
-        }
-        // Evaluate what is within a step of a cell.
-        let reach = F::Real::from_f32(1.01) * step;
-        let mut near = Vec::with_capacity(points.len());
-        for start in (0..points.len()).step_by(BLOCK) {
-            let found = near_cells(&medium.cells, reach, points, start);
-            near.extend((start..points.len()).zip(found).filter(|(_, near)| *near).map(|(index, _)| index));
-        }
-        let chosen = near.iter().map(|&index| points.get(index)).collect();
-        let [found] = self.fields.sample(medium.region, &chosen);
-        self.stats.region_evaluations += near.len() as u64;
-        let mut region = vec![F::Real::from_f32(FAR); points.len()];
-        near.into_iter().zip(found).for_each(|(index, found)| region[index] = found);
+    /// Signed distances of one medium's region.
+    pub(super) fn region(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<F::Real> {
+        let [region] = self.fields.sample(self.scene.media[medium].region, points);
+        self.stats.region_evaluations += points.len() as u64;
         region
     }
 
@@ -194,16 +240,13 @@ impl<F: Fields> Integrator<'_, F> {
         let mut runs = Vec::with_capacity(active.len());
         let mut points = Points::new();
         for (which, cursor) in active.iter().enumerate() {
-            let (range, whole) = (combs.ranges[medium][cursor.ray], combs.whole[cursor.ray]);
-            let first = range.first.max(cursor.node);
-            let last = range.last.min(whole.last).min(cursor.node + self.batches.nodes - 1);
-            if first <= last {
+            for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
                 runs.push((which, first, last, points.len()));
                 let nodes = first - 1..=last + 1;
                 nodes.for_each(|node| points.push(rays[cursor.ray].at(combs.distance(cursor.ray, node))));
             }
         }
-        let region = self.region(medium, &points, combs.step);
+        let region = self.region(medium, &points);
         // Keep those inside, with the length that each stands for.
         let mut inside = Inside { slots: Vec::new(), weights: Vec::new(), points: Points::new() };
         for (which, first, last, offset) in runs {
@@ -230,25 +273,6 @@ impl<F: Fields> Integrator<'_, F> {
         }
         inside
     }
-}
-
-/// Which of the points from `start` on are in a cell grown by `reach`.
-#[inline(never)]
-fn near_cells<R: Real>(cells: &[[Vec3<R>; 2]], reach: R, points: &Points<R>, start: usize) -> [bool; BLOCK] {
-    let mut place = [[R::ZERO; BLOCK]; 3];
-    let [x, y, z] = &mut place;
-    let block = start..points.len().min(start + BLOCK);
-    for (index, ((x, y), z)) in block.zip(x.iter_mut().zip(y.iter_mut()).zip(z.iter_mut())) {
-        [*x, *y, *z] = points.get(index);
-    }
-    let mut near = [false; BLOCK];
-    for &[lo, hi] in cells {
-        let (lo, hi) = (sub(lo, splat(reach)), add(hi, splat(reach)));
-        for (near, ((&x, &y), &z)) in near.iter_mut().zip(x.iter().zip(y.iter()).zip(z.iter())) {
-            *near |= (lo[0] <= x) & (x <= hi[0]) & (lo[1] <= y) & (y <= hi[1]) & (lo[2] <= z) & (z <= hi[2]);
-        }
-    }
-    near
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
 use crate::real::{Real, Vec3, add, mul, scale, sub};
+use std::array;
 
 /// Up to this optical depth a panel is thin.
 const THIN: f32 = 0.125;
@@ -64,7 +65,7 @@ impl<F: Fields> Integrator<'_, F> {
         for (filling, list) in fillings.iter().zip(lists) {
             for panel in list {
                 let sources = panel.ends.map(|end| filling.source[end]);
-                let sent = sent(panel.masses, sources, chunk.depth[panel.slot]);
+                let sent = sent(panel.masses, sources, chunk.depth[panel.slot], chunk.decay[panel.slot]);
                 chunk.sent[panel.slot] = add(chunk.sent[panel.slot], sent);
             }
         }
@@ -73,11 +74,11 @@ impl<F: Fields> Integrator<'_, F> {
 }
 
 /// Light that a panel sends towards the eye, in front of it.
-fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>) -> Vec3<R> {
-    let steady = mul(from, depth.map(Real::mean_decay));
-    let change = mul(sub(to, from), depth.map(Real::decay_moment));
+fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>, decay: Vec3<R>) -> Vec3<R> {
+    let steady = mul(from, array::from_fn(|channel| depth[channel].mean_decay(decay[channel])));
+    let change = mul(sub(to, from), array::from_fn(|channel| depth[channel].decay_moment(decay[channel])));
     let thick = scale(add(steady, change), masses[0] + masses[1]);
-    let thin = add(scale(from, masses[0]), scale(mul(to, depth.map(Real::decay)), masses[1]));
+    let thin = add(scale(from, masses[0]), scale(mul(to, decay), masses[1]));
     let rise = |x: R| ((x - R::from_f32(THIN)) * R::from_f32(1.0 / (THICK - THIN))).max(R::ZERO).min(R::ONE);
     add(thin, mul(sub(thick, thin), depth.map(rise)))
 }

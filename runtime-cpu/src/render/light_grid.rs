@@ -183,7 +183,8 @@ pub(super) fn fill<F: Fields<Real = f32>>(
     };
     let parts: Vec<_> = rays.par_chunks(Batches::DEFAULT.rays).map(columns).collect();
     let spent = parts.iter().map(|part| part.1).sum();
-    let depths: Vec<Vec3<f32>> = parts.into_iter().flat_map(|part| part.0).collect();
+    // Where they are: all of them in one piece would be as much memory again.
+    let depths: Vec<_> = parts.into_iter().map(|part| part.0).collect();
     store(&mut table, &depths);
     Some((table, spent))
 }
@@ -208,18 +209,20 @@ const SAME: f32 = 1e-5;
 
 /// Puts depths into a grid: one per point where the channels are in proportion, as in all media whose
 /// extinction has one colour.
-fn store(table: &mut LightGrid, depths: &[Vec3<f32>]) {
+fn store(table: &mut LightGrid, depths: &[Vec<Vec3<f32>>]) {
+    let all = || depths.iter().flatten();
     let total = |depth: &Vec3<f32>| (depth[0] + depth[1]) + depth[2];
-    let deepest = depths.iter().fold([0.0; 3], |a, b| if total(b) > total(&a) { *b } else { a });
+    let deepest = all().fold([0.0; 3], |a, b| if total(b) > total(&a) { *b } else { a });
     let whole = total(&deepest);
     let tint = if whole > 0.0 { deepest.map(|depth| depth / whole) } else { [1.0; 3] };
     let alike = |depth: &Vec3<f32>| {
         let amount = total(depth);
         (0..3).all(|channel| (depth[channel] - tint[channel] * amount).abs() <= SAME * amount)
     };
-    table.colored = !depths.iter().all(alike);
+    table.colored = !all().all(alike);
     table.tint = if table.colored { [1.0; 3] } else { tint };
-    table.depths = if table.colored { depths.concat() } else { depths.iter().map(total).collect() };
+    table.depths =
+        if table.colored { all().flatten().copied().collect() } else { all().map(total).collect() };
 }
 
 impl<F: Fields> Integrator<'_, F> {
@@ -245,10 +248,7 @@ impl<F: Fields> Integrator<'_, F> {
                     }
                 }
             }
-            active.retain_mut(|cursor| {
-                cursor.node += nodes;
-                cursor.node <= combs.whole[cursor.ray].last
-            });
+            active.retain_mut(|cursor| combs.advance(cursor, nodes));
         }
         // Add up along the light.
         for depths in depths.chunks_mut(points) {

@@ -81,8 +81,12 @@ pub(super) struct Part<R> {
 impl<F: Fields> Integrator<'_, F> {
     /// Indices of the points inside a medium.
     pub(super) fn inside_of(&mut self, medium: usize, points: &Points<F::Real>) -> Vec<usize> {
-        let found = self.region(medium, points, F::Real::ZERO).into_iter();
-        found.enumerate().filter(|(_, region)| *region < F::Real::ZERO).map(|(index, _)| index).collect()
+        let cells = &self.scene.media[medium].cells;
+        let near = |&index: &usize| cells.is_empty() || cells.is_near(points.get(index), F::Real::ZERO);
+        let near: Vec<usize> = (0..points.len()).filter(near).collect();
+        let found = self.region(medium, &near.iter().map(|&index| points.get(index)).collect());
+        let inside = near.into_iter().zip(found).filter(|(_, region)| *region < F::Real::ZERO);
+        inside.map(|(index, _)| index).collect()
     }
 
     /// What a medium is at points inside it.

@@ -17,6 +17,7 @@ use super::fields::Fields;
 use super::scatter::{Filling, Place, scatters};
 use super::scene::Integrator;
 use crate::real::{Real, Vec3, add, largest, mul, scale, splat};
+use std::array;
 use vol_compiler::frame::Quadrature;
 
 /// Where less than this of the light arrives, the ray ends: what lies behind is lost, at most this
@@ -52,6 +53,8 @@ impl<R: Real> Glow<R> {
 pub(super) struct Chunk<R> {
     /// Optical depth.
     pub(super) depth: Vec<Vec3<R>>,
+    /// exp(-x) of that.
+    pub(super) decay: Vec<Vec3<R>>,
     /// Fraction of what is sent from there that reaches the eye; nothing behind the end of the ray.
     pub(super) arriving: Vec<Option<Vec3<R>>>,
     /// Light that leaves towards the eye.
@@ -62,7 +65,8 @@ impl<R: Real> Chunk<R> {
     /// Nothing is there.
     pub(super) fn new(slots: usize) -> Self {
         let zero = splat(R::ZERO);
-        Self { depth: vec![zero; slots], arriving: vec![None; slots], sent: vec![zero; slots] }
+        let decay = vec![splat(R::ONE); slots];
+        Self { depth: vec![zero; slots], decay, arriving: vec![None; slots], sent: vec![zero; slots] }
     }
 }
 
@@ -86,9 +90,8 @@ impl<F: Fields> Integrator<'_, F> {
             // Go on with the rays that still let light through.
             let stop = self.scene.stop;
             active.retain_mut(|cursor| {
-                cursor.node += self.batches.nodes;
                 let open = largest(glows[cursor.ray].transmittance) >= stop;
-                open && cursor.node <= combs.whole[cursor.ray].last
+                open && combs.advance(cursor, self.batches.nodes)
             });
         }
         glows
@@ -119,7 +122,8 @@ impl<F: Fields> Integrator<'_, F> {
         for filling in &fillings {
             for (place, &source) in filling.places.iter().zip(&filling.source) {
                 let slot = slot(place);
-                let sent = mul(source, chunk.depth[slot].map(Real::mean_decay));
+                let [depth, decay] = [chunk.depth[slot], chunk.decay[slot]];
+                let sent = mul(source, array::from_fn(|channel| depth[channel].mean_decay(decay[channel])));
                 chunk.sent[slot] = add(chunk.sent[slot], sent);
             }
         }
@@ -158,6 +162,7 @@ impl<F: Fields> Integrator<'_, F> {
     /// Finds how much of each node's light arrives, and which nodes are behind the end of the ray.
     pub(super) fn transmit(&self, active: &[Cursor], glows: &[Glow<F::Real>], chunk: &mut Chunk<F::Real>) {
         let nodes = self.batches.nodes as usize;
+        self.fields.decays(chunk.depth.as_flattened(), chunk.decay.as_flattened_mut());
         for (which, cursor) in active.iter().enumerate() {
             let mut transmittance = glows[cursor.ray].transmittance;
             for slot in which * nodes..(which + 1) * nodes {
@@ -165,7 +170,7 @@ impl<F: Fields> Integrator<'_, F> {
                     break;
                 }
                 chunk.arriving[slot] = Some(transmittance);
-                transmittance = mul(transmittance, chunk.depth[slot].map(Real::decay));
+                transmittance = mul(transmittance, chunk.decay[slot]);
             }
         }
     }
@@ -178,7 +183,7 @@ impl<F: Fields> Integrator<'_, F> {
             for node in 0..nodes {
                 let slot = which * nodes + node;
                 let Some(arriving) = chunk.arriving[slot] else { break };
-                let (sent, decay) = (chunk.sent[slot], chunk.depth[slot].map(Real::decay));
+                let (sent, decay) = (chunk.sent[slot], chunk.decay[slot]);
                 glow.light = add(glow.light, mul(arriving, sent));
                 glow.transmittance = mul(arriving, decay);
                 // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).

@@ -20,7 +20,7 @@
 
 use super::camera::Ray;
 use super::chord::Gap;
-use super::comb::{Combs, Cursor};
+use super::comb::{Combs, Cursor, NodeRange};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::Integrator;
@@ -181,10 +181,7 @@ impl<F: Fields> Integrator<'_, F> {
         let mut runs = Vec::with_capacity(active.len());
         let (mut nodes, mut points) = (Vec::new(), Points::new());
         for (which, cursor) in active.iter().enumerate() {
-            let (range, whole) = (combs.ranges[medium][cursor.ray], combs.whole[cursor.ray]);
-            let first = range.first.max(cursor.node);
-            let last = range.last.min(whole.last).min(cursor.node + self.batches.nodes - 1);
-            if first <= last {
+            for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
                 runs.push((which, first, last, nodes.len()));
                 for node in first..=last + 1 {
                     let t = combs.distance(cursor.ray, node);
@@ -195,7 +192,7 @@ impl<F: Fields> Integrator<'_, F> {
                 }
             }
         }
-        let region = self.region(medium, &points, combs.step);
+        let region = self.region(medium, &points);
         // Keep those inside.
         let mut places = Vec::new();
         let mut place_of = vec![0; nodes.len()];

@@ -396,8 +396,7 @@ fn between(step: f32, error: f32, before: Option<f32>, max_error: f32) -> (f32, 
 fn meets_media(scene: &Scene<f32>, ray: &Ray<f32>) -> bool {
     scene.media.iter().any(|medium| {
         let cells = &medium.cells;
-        slab(ray, medium.lo, medium.hi).is_some()
-            && (cells.is_empty() || cells.iter().any(|&[lo, hi]| slab(ray, lo, hi).is_some()))
+        slab(ray, medium.lo, medium.hi).is_some() && (cells.is_empty() || cells.is_met_by(ray))
     })
 }
 

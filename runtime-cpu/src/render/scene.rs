@@ -1,5 +1,6 @@
 //! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
 
+use super::cells::Cells;
 use super::fields::Fields;
 use super::light_grid::Grid;
 use super::medium::STOP;
@@ -95,8 +96,8 @@ pub(crate) struct Medium<R> {
     pub(crate) lighting: Lighting,
     pub(crate) lo: Vec3<R>,
     pub(crate) hi: Vec3<R>,
-    /// Smallest and largest corners of its cells; none if it may be anywhere in its box.
-    pub(crate) cells: Vec<[Vec3<R>; 2]>,
+    /// Boxes in which it is; none if it may be anywhere in its own.
+    pub(crate) cells: Cells<R>,
 }
 
 /// See [`vol_compiler::frame::LightFrame`].
@@ -184,7 +185,7 @@ fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
             lighting: medium.lighting,
             lo: vector(bounds.lo),
             hi: vector(bounds.hi),
-            cells: cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect(),
+            cells: Cells::new(cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect()),
         })
     };
     frame.media.iter().filter_map(medium).collect()

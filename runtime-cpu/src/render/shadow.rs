@@ -165,9 +165,8 @@ impl<F: Fields> Integrator<'_, F> {
             }
             // Go on with the rays that are not dark yet.
             active.retain_mut(|cursor| {
-                cursor.node += nodes;
                 let dark = smallest(depths[cursor.ray]) > self.scene.opaque;
-                !dark && cursor.node <= combs.whole[cursor.ray].last
+                !dark && combs.advance(cursor, nodes)
             });
         }
         depths

@@ -5,7 +5,7 @@
 //! search vectorise.
 
 use super::{LANES, Operands, Out};
-use crate::isa::{Isa, kernel};
+use crate::isa::{Isa, Kernel, kernel};
 use crate::math::curve::{self, CurvePoint, Search, feet, nodes};
 use vol_compiler::curve::{Node, Piece};
 use vol_compiler::ops::MAX_RESULTS;
@@ -61,23 +61,31 @@ kernel! {
     }
 }
 
-kernel! {
-    /// Describes the foot in the first `n` lanes on one piece and keeps it where that piece won. Arrays of its own, so
-    /// that the compiler need not fear that they overlap.
-    fn Describe<'a>(
-        (searches, n, piece, index, found): (
-            &'a Searches, usize, Piece, u32, &'a mut [[f32; LANES]; MAX_RESULTS],
-        )
-    ) {
+/// Describes the foot in the first `n` lanes on one piece and keeps it where that piece won: of the results those in
+/// `WANTED`, one bit each. Arrays of its own, so that the compiler need not fear that they overlap.
+struct Describe<const WANTED: u8>;
+
+impl<const WANTED: u8> Kernel for Describe<WANTED> {
+    type Args<'a> = (&'a Searches, usize, Piece, u32, &'a mut [[f32; LANES]; MAX_RESULTS]);
+    type Out = ();
+
+    #[inline(always)]
+    fn run((searches, n, piece, index, found): Self::Args<'_>) {
         for lane in 0..n.min(LANES) {
             let values = values(&curve::describe(searches.point(lane), &piece, searches.t[lane]));
             let won = searches.piece[lane] == index;
-            for (found, value) in found.iter_mut().zip(values) {
-                found[lane] = if won { value } else { found[lane] };
+            for result in (0..MAX_RESULTS).filter(|result| WANTED >> result & 1 == 1) {
+                found[result][lane] = if won { values[result] } else { found[result][lane] };
             }
         }
     }
 }
+
+/// The results that most regions need: t, distance, overshoot.
+const WALL: u8 = 1 << 0 | 1 << 5 | 1 << 6;
+
+/// All but the arc length, which takes a logarithm.
+const WITHOUT_LENGTH: u8 = !(1 << 1);
 
 /// In the order of the operation's results.
 #[inline(always)]
@@ -232,14 +240,27 @@ fn winners(searches: &Searches, n: usize) -> Option<([u32; MOST_WINNERS], usize)
 const MOST_WINNERS: usize = 6;
 
 /// [`curve::closest`] in each lane.
-pub(super) fn closest(isa: Isa, x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
+pub(super) fn closest(
+    isa: Isa,
+    x: &Operands<'_>,
+    out: &mut Out,
+    parts: (&[Piece], &[Node]),
+    wanted: u8,
+) -> usize {
     let (n, pieces) = (x[0].len().min(LANES), parts.0);
     let searches = search(isa, x, parts);
     // Describe the foot on the winner.
     if let Some((all, count)) = winners(&searches, n).filter(|_| !pieces.is_empty()) {
         let mut found = [[0.0; LANES]; MAX_RESULTS];
         for &index in &all[..count] {
-            isa.run::<Describe>((&searches, n, pieces[index as usize], index, &mut found));
+            let args = (&searches, n, pieces[index as usize], index, &mut found);
+            if wanted & !WALL == 0 {
+                isa.run::<Describe<WALL>>(args);
+            } else if wanted & !WITHOUT_LENGTH == 0 {
+                isa.run::<Describe<WITHOUT_LENGTH>>(args);
+            } else {
+                isa.run::<Describe<{ u8::MAX }>>(args);
+            }
         }
         for (out, found) in out.iter_mut().zip(&found) {
             out.0[..n].copy_from_slice(&found[..n]);

@@ -18,7 +18,8 @@ pub(crate) mod batch;
 pub(crate) mod meter;
 pub(crate) mod work;
 
-use batch::Lanes;
+use crate::isa::{Isa, kernel};
+use batch::{Bank, Context, Lanes};
 use std::array;
 use std::ops::Range;
 use vol_compiler::curve::CurveTable;
@@ -29,12 +30,13 @@ use vol_compiler::program::Program;
 use vol_compiler::tape::{Register, Tape, TapeLoop, TapeOp};
 
 /// Points that go through a tape together.
-pub const LANES: usize = 64;
+pub const LANES: usize = 128;
 
 /// The tapes of all functions of a program.
 #[derive(Clone, Debug)]
 pub struct Tapes {
     tapes: Vec<Tape>,
+    isa: Isa,
 }
 
 impl Tapes {
@@ -47,7 +49,13 @@ impl Tapes {
     /// Prepares a verified module.
     #[must_use]
     pub fn of_module(module: &Module) -> Self {
-        Self { tapes: module.functions.iter().map(Tape::new).collect() }
+        Self { tapes: module.functions.iter().map(Tape::new).collect(), isa: Isa::best() }
+    }
+
+    /// The same for other vector instructions; results are the same bits.
+    #[must_use]
+    pub fn for_isa(self, isa: Isa) -> Self {
+        Self { isa, ..self }
     }
 
     /// The tape of one function.
@@ -63,9 +71,8 @@ pub struct Evaluator<'a> {
     tapes: &'a Tapes,
     uniforms: &'a [f32],
     curves: &'a [CurveTable],
-    #[expect(clippy::vec_box, reason = "a result changes places with a register instead of being copied")]
-    registers: Vec<Box<Lanes>>,
-    results: [Box<Lanes>; MAX_RESULTS],
+    registers: Vec<Lanes>,
+    results: Box<[Lanes; MAX_RESULTS]>,
     /// Which points of the batch go on in the loops around the tape at hand.
     going: [bool; LANES],
     /// Operations in the bodies of loops, see [`work`]; only counted where someone asks.
@@ -83,8 +90,8 @@ impl<'a> Evaluator<'a> {
     #[must_use]
     pub fn of_parts(tapes: &'a Tapes, uniforms: &'a [f32], curves: &'a [CurveTable]) -> Self {
         let most = tapes.tapes.iter().map(Tape::all_registers).max().unwrap_or(0);
-        let registers = (0..most).map(|_| Box::default()).collect();
-        let results = array::from_fn(|_| Box::default());
+        let registers = vec![Lanes::default(); most];
+        let results = Box::new(array::from_fn(|_| Lanes::default()));
         Self { tapes, uniforms, curves, registers, results, going: [true; LANES], loop_work: None }
     }
 
@@ -122,22 +129,19 @@ impl<'a> Evaluator<'a> {
     ) {
         let n = points.len();
         let at = |register: Register| own.first + register.index();
-        for step in &tape.ops[steps] {
+        let mut rest = &tape.ops[steps];
+        loop {
+            // As many operations of a few instructions as there are, then one that is a function of its own.
+            let bank = Bank { rows: &mut self.registers, points: n };
+            let done = self.tapes.isa.run::<Simple>((bank, self.uniforms, rest, own.first, inputs, points));
+            let Some((step, after)) = rest[done..].split_first() else { return };
+            rest = after;
             match *step {
-                TapeOp::Constant { to, value } => {
-                    self.registers[at(to)].0[..n].fill(value);
-                }
-                TapeOp::Uniform { to, index } => {
-                    self.registers[at(to)].0[..n].fill(self.uniforms[index as usize]);
-                }
-                TapeOp::Input { to, index } => {
-                    self.registers[at(to)].0[..n].copy_from_slice(&inputs[index as usize][points.clone()]);
-                }
                 TapeOp::Apply { op, data, to, args } => {
                     let args = args.map(|register| &self.registers[at(register)].0[..n]);
-                    let written = batch::apply(op, data, &args, &mut self.results, self.curves);
-                    let registers = &mut self.registers[at(to)..at(to) + written];
-                    registers.swap_with_slice(&mut self.results[..written]);
+                    let context = Context { isa: self.tapes.isa, curves: self.curves };
+                    let written = batch::apply(op, data, &args, &mut self.results, context);
+                    self.registers[at(to)..at(to) + written].clone_from_slice(&self.results[..written]);
                 }
                 TapeOp::Loop { index, to } => {
                     let repeated = &tape.loops[index as usize];
@@ -146,6 +150,7 @@ impl<'a> Evaluator<'a> {
                         self.registers.swap(at(to) + i, own.above + i);
                     }
                 }
+                TapeOp::Constant { .. } | TapeOp::Uniform { .. } | TapeOp::Input { .. } => {}
             }
         }
     }
@@ -210,6 +215,33 @@ fn batches(
     );
     assert!(lengths.all(|length| length == count), "slices differ in length");
     (0..count).step_by(LANES).map(move |start| start..count.min(start + LANES))
+}
+
+kernel! {
+    /// Takes steps of a few instructions; how many there were.
+    fn Simple<'a>(
+        (mut bank, uniforms, steps, first, inputs, points): (
+            Bank<'a>, &'a [f32], &'a [TapeOp], usize, &'a [&'a [f32]], &'a Range<usize>,
+        )
+    ) -> usize {
+        let at = |register: Register| first + register.index();
+        for (done, step) in steps.iter().enumerate() {
+            match *step {
+                TapeOp::Constant { to, value } => bank.fill(at(to), value),
+                TapeOp::Uniform { to, index } => bank.fill(at(to), uniforms[index as usize]),
+                TapeOp::Input { to, index } => {
+                    bank.rows[at(to)].0[..points.len()].copy_from_slice(&inputs[index as usize][points.clone()]);
+                }
+                TapeOp::Apply { op, to, args, .. } => {
+                    if !bank.apply(op, at(to), args.map(at)) {
+                        return done;
+                    }
+                }
+                TapeOp::Loop { .. } => return done,
+            }
+        }
+        steps.len()
+    }
 }
 
 /// Where a tape's registers are.

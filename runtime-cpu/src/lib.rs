@@ -14,10 +14,12 @@
 //! batches: bit for bit.
 
 pub mod interp;
+mod isa;
 pub mod math;
 mod real;
 pub mod render;
 
+pub use isa::Isa;
 pub use render::{
     Choice, FunctionCost, GridChoice, Method, NoMajorant, PartCost, PixelCost, Profile, Stats, StepChoice,
     TubeBounds, choose, choose_light_grids, choose_step, fixed_step_default, least_step, profile,

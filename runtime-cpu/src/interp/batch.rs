@@ -8,7 +8,9 @@ mod curve;
 mod noise;
 
 use super::LANES;
-use crate::math::{fun, noise as kernel};
+use crate::isa::{Isa, kernel};
+use crate::math::fun;
+use std::array;
 use vol_compiler::curve::{CurveTable, Node, Piece};
 use vol_compiler::ops::{MAX_RESULTS, Op};
 use vol_compiler::tape::MAX_OPERANDS;
@@ -24,52 +26,136 @@ impl Default for Lanes {
     }
 }
 
-type Operands<'a> = [&'a [f32]; MAX_OPERANDS];
-type Out = [Box<Lanes>; MAX_RESULTS];
+/// Numbers that one step of a simple loop takes: as many as the widest vectors hold.
+const CHUNK: usize = 16;
 
-/// Applies an operation to all lanes of its operands; returns how many results were written.
-pub(crate) fn apply(op: Op, data: u32, x: &Operands<'_>, out: &mut Out, curves: &[CurveTable]) -> usize {
+impl Lanes {
+    fn chunks(&self) -> &[[f32; CHUNK]] {
+        self.0.as_chunks().0
+    }
+
+    fn chunks_mut(&mut self) -> &mut [[f32; CHUNK]] {
+        self.0.as_chunks_mut().0
+    }
+}
+
+/// The registers of a tape and the part of each that is in use.
+pub(crate) struct Bank<'a> {
+    /// One row each.
+    pub(crate) rows: &'a mut [Lanes],
+    /// Points; whole chunks of them are computed.
+    pub(crate) points: usize,
+}
+
+impl Bank<'_> {
+    fn steps(&self) -> usize {
+        self.points.div_ceil(CHUNK).min(LANES / CHUNK)
+    }
+
+    /// Sets a register to one number.
+    #[inline(always)]
+    pub(crate) fn fill(&mut self, to: usize, value: f32) {
+        let steps = self.steps();
+        self.rows[to].chunks_mut()[..steps].fill([value; CHUNK]);
+    }
+
+    #[inline(always)]
+    fn one(&mut self, to: usize, [a]: [usize; 1], f: impl Fn(f32) -> f32) {
+        for step in 0..self.steps() {
+            let a = self.rows[a].chunks()[step];
+            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane]));
+        }
+    }
+
+    #[inline(always)]
+    fn two(&mut self, to: usize, [a, b]: [usize; 2], f: impl Fn(f32, f32) -> f32) {
+        for step in 0..self.steps() {
+            let [a, b] = [a, b].map(|row| self.rows[row].chunks()[step]);
+            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane], b[lane]));
+        }
+    }
+
+    #[inline(always)]
+    fn three(&mut self, to: usize, [a, b, c]: [usize; 3], f: impl Fn(f32, f32, f32) -> f32) {
+        for step in 0..self.steps() {
+            let [a, b, c] = [a, b, c].map(|row| self.rows[row].chunks()[step]);
+            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane], b[lane], c[lane]));
+        }
+    }
+
+    /// Applies an operation of a few instructions; whether it is one.
+    #[inline(always)]
+    pub(crate) fn apply(&mut self, op: Op, to: usize, args: [usize; MAX_OPERANDS]) -> bool {
+        let [a, b, c, ..] = args;
+        match op {
+            Op::Add => self.two(to, [a, b], |a, b| a + b),
+            Op::Sub => self.two(to, [a, b], |a, b| a - b),
+            Op::Mul => self.two(to, [a, b], |a, b| a * b),
+            Op::Div => self.two(to, [a, b], |a, b| a / b),
+            Op::Min => self.two(to, [a, b], fun::lesser),
+            Op::Max => self.two(to, [a, b], fun::greater),
+            Op::Neg => self.one(to, [a], |a| -a),
+            Op::Abs => self.one(to, [a], f32::abs),
+            Op::Floor => self.one(to, [a], fun::floor),
+            Op::Sqrt => self.one(to, [a], |a| fun::greater(a, 0.0).sqrt()),
+            Op::Less => self.two(to, [a, b], |a, b| truth(a < b)),
+            Op::LessEqual => self.two(to, [a, b], |a, b| truth(a <= b)),
+            Op::Equal => self.two(to, [a, b], |a, b| truth(a == b)),
+            // On the bits of 0 and 1.
+            Op::And => self.two(to, [a, b], |a, b| f32::from_bits(a.to_bits() & b.to_bits())),
+            Op::Or => self.two(to, [a, b], |a, b| f32::from_bits(a.to_bits() | b.to_bits())),
+            Op::Not => self.one(to, [a], |a| f32::from_bits(a.to_bits() ^ 1.0_f32.to_bits())),
+            Op::Select => self.three(to, [a, b, c], |condition, a, b| if condition != 0.0 { a } else { b }),
+            _ => return false,
+        }
+        true
+    }
+}
+
+type Operands<'a> = [&'a [f32]; MAX_OPERANDS];
+type Out = [Lanes; MAX_RESULTS];
+
+/// What the operations that are functions of their own need to know.
+#[derive(Clone, Copy)]
+pub(crate) struct Context<'a> {
+    pub(crate) isa: Isa,
+    pub(crate) curves: &'a [CurveTable],
+}
+
+/// Applies an operation that is a function of its own to all lanes of its operands; returns how many results were
+/// written.
+pub(crate) fn apply(
+    op: Op,
+    data: u32,
+    x: &Operands<'_>,
+    out: &mut Out,
+    Context { isa, curves }: Context<'_>,
+) -> usize {
     match op {
-        Op::Add => two(x, out, |a, b| a + b),
-        Op::Sub => two(x, out, |a, b| a - b),
-        Op::Mul => two(x, out, |a, b| a * b),
-        Op::Div => two(x, out, |a, b| a / b),
-        Op::Min => two(x, out, fun::lesser),
-        Op::Max => two(x, out, fun::greater),
-        Op::Neg => one(x, out, |a| -a),
-        Op::Abs => one(x, out, f32::abs),
-        Op::Floor => one(x, out, fun::floor),
-        Op::Sqrt => one(x, out, |a| fun::greater(a, 0.0).sqrt()),
-        Op::Sin => one(x, out, fun::sin),
-        Op::Cos => one(x, out, fun::cos),
-        Op::Exp2 => one(x, out, fun::exp2),
-        Op::Log2 => one(x, out, fun::log2),
-        Op::Acos => one(x, out, fun::acos),
-        Op::Atan2 => two(x, out, fun::atan2),
-        Op::Less => two(x, out, |a, b| truth(a < b)),
-        Op::LessEqual => two(x, out, |a, b| truth(a <= b)),
-        Op::Equal => two(x, out, |a, b| truth(a == b)),
-        // On the bits of 0 and 1.
-        Op::And => two(x, out, |a, b| f32::from_bits(a.to_bits() & b.to_bits())),
-        Op::Or => two(x, out, |a, b| f32::from_bits(a.to_bits() | b.to_bits())),
-        Op::Not => one(x, out, |a| f32::from_bits(a.to_bits() ^ 1.0_f32.to_bits())),
-        Op::Select => three(x, out, |condition, a, b| if condition != 0.0 { a } else { b }),
-        Op::Perlin => noise::perlin(x, out, data),
-        Op::PerlinGradient => noise::perlin_gradient(x, out, data),
-        Op::Fbm => noise::fbm(x, out, data),
-        Op::FbmGradient => noise::fbm_gradient(x, out, data),
-        Op::Perlin4 => noise::each(x, out, |p| [kernel::perlin4(p, data)]),
-        Op::Perlin4Gradient => noise::each(x, out, |p| kernel::perlin4_gradient(p, data)),
-        Op::Value => noise::each(x, out, |p| [kernel::value(p, data)]),
-        Op::ValueGradient => noise::each(x, out, |p| kernel::value_gradient(p, data)),
-        Op::Simplex => noise::each(x, out, |p| [kernel::simplex(p, data)]),
-        Op::SimplexGradient => noise::each(x, out, |p| kernel::simplex_gradient(p, data)),
-        Op::Worley => noise::worley::<1>(x, out, data),
-        Op::WorleyGradient => noise::worley::<4>(x, out, data),
-        Op::Hash => noise::each(x, out, |p| [kernel::hash(p, data)]),
-        Op::Closest => curve::closest(x, out, curve_parts(curves, data)),
-        Op::ClosestGradient => curve::closest_gradient(x, out, curve_parts(curves, data)),
+        Op::Sin => isa.run::<Sin>((x[0], out)),
+        Op::Cos => isa.run::<Cos>((x[0], out)),
+        Op::Exp2 => isa.run::<Exp2>((x[0], out)),
+        Op::Log2 => isa.run::<Log2>((x[0], out)),
+        Op::Acos => isa.run::<Acos>((x[0], out)),
+        Op::Atan2 => isa.run::<Atan2>((x[0], x[1], out)),
+        Op::Perlin => noise::perlin(isa, x, out, data),
+        Op::PerlinGradient => noise::perlin_gradient(isa, x, out, data),
+        Op::Fbm => noise::fbm(isa, x, out, data),
+        Op::FbmGradient => noise::fbm_gradient(isa, x, out, data),
+        Op::Perlin4 => isa.run::<noise::Perlin4>((x, out, data)),
+        Op::Perlin4Gradient => isa.run::<noise::Perlin4Gradient>((x, out, data)),
+        Op::Value => isa.run::<noise::Value>((x, out, data)),
+        Op::ValueGradient => isa.run::<noise::ValueGradient>((x, out, data)),
+        Op::Simplex => isa.run::<noise::Simplex>((x, out, data)),
+        Op::SimplexGradient => isa.run::<noise::SimplexGradient>((x, out, data)),
+        Op::Worley => isa.run::<noise::Worley<1>>((x, out, data)),
+        Op::WorleyGradient => isa.run::<noise::Worley<4>>((x, out, data)),
+        Op::Hash => isa.run::<noise::Hash>((x, out, data)),
+        Op::Closest => curve::closest(isa, x, out, curve_parts(curves, data)),
+        Op::ClosestGradient => curve::closest_gradient(isa, x, out, curve_parts(curves, data)),
         Op::Foot => curve::next_foot(x, out, curve_parts(curves, data)),
+        // All others are of a few instructions.
+        _ => 0,
     }
 }
 
@@ -77,30 +163,32 @@ fn curve_parts(curves: &[CurveTable], data: u32) -> (&[Piece], &[Node]) {
     curves.get(data as usize).map_or((&[], &[]), |table| (&table.pieces, &table.nodes))
 }
 
+#[inline(always)]
 fn truth(holds: bool) -> f32 {
     if holds { 1.0 } else { 0.0 }
 }
 
-#[inline(always)]
-fn one(x: &Operands<'_>, out: &mut Out, f: impl Fn(f32) -> f32) -> usize {
-    for (out, &a) in out[0].0.iter_mut().zip(x[0]) {
-        *out = f(a);
-    }
-    1
+/// Functions of one number in each lane.
+macro_rules! functions {
+    ($($name:ident: $function:ident;)*) => { $(
+        kernel! {
+            fn $name<'a>((x, out): (&'a [f32], &'a mut Out)) -> usize {
+                for (out, &x) in out[0].0.iter_mut().zip(x) {
+                    *out = fun::$function(x);
+                }
+                1
+            }
+        }
+    )* };
 }
 
-#[inline(always)]
-fn two(x: &Operands<'_>, out: &mut Out, f: impl Fn(f32, f32) -> f32) -> usize {
-    for ((out, &a), &b) in out[0].0.iter_mut().zip(x[0]).zip(x[1]) {
-        *out = f(a, b);
-    }
-    1
-}
+functions! { Sin: sin; Cos: cos; Exp2: exp2; Log2: log2; Acos: acos; }
 
-#[inline(always)]
-fn three(x: &Operands<'_>, out: &mut Out, f: impl Fn(f32, f32, f32) -> f32) -> usize {
-    for (((out, &a), &b), &c) in out[0].0.iter_mut().zip(x[0]).zip(x[1]).zip(x[2]) {
-        *out = f(a, b, c);
+kernel! {
+    fn Atan2<'a>((y, x, out): (&'a [f32], &'a [f32], &'a mut Out)) -> usize {
+        for ((out, &y), &x) in out[0].0.iter_mut().zip(y).zip(x) {
+            *out = fun::atan2(y, x);
+        }
+        1
     }
-    1
 }

@@ -54,13 +54,34 @@ fn values_do_not_depend_on_the_batch() {
         let module = module(vec![random::function(seed, &shape)]);
         let inputs = arguments(seed, 200, shape.inputs);
         let whole = bits(&evaluate(&module, &inputs, 200));
-        for batch in [1, 3, 64, 65, 127] {
+        for batch in [1, 3, 16, 64, 65, 127, 128, 129] {
             assert_eq!(
                 bits(&evaluate(&module, &inputs, batch)),
                 whole,
                 "{}",
                 text::print_function(&module.functions[0])
             );
+        }
+    }
+}
+
+#[test]
+fn all_instruction_sets_compute_the_same() {
+    for seed in 0..80 {
+        let shape = Shape { operations: 60, tame: seed % 2 == 0, ..Shape::default() };
+        let module = module(vec![random::function(seed, &shape)]);
+        let inputs = arguments(seed, 150, shape.inputs);
+        let slices: Vec<&[f32]> = inputs.iter().map(Vec::as_slice).collect();
+        let tables = tables();
+        let of = |isa: Isa| {
+            let tapes = Tapes::of_module(&module).for_isa(isa);
+            let mut all = vec![vec![0.0; 150]; module.functions[0].outputs.len()];
+            let mut outputs: Vec<&mut [f32]> = all.iter_mut().map(Vec::as_mut_slice).collect();
+            Evaluator::of_parts(&tapes, &UNIFORMS, &tables).evaluate(FunctionId(0), &slices, &mut outputs);
+            bits(&all)
+        };
+        for isa in Isa::all() {
+            assert_eq!(of(isa), of(Isa::BASELINE), "{}", isa.name());
         }
     }
 }

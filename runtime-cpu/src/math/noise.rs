@@ -21,7 +21,7 @@ pub use simplex::{simplex, simplex_gradient};
 pub use value::{value, value_gradient};
 pub use worley::{Nearest, worley, worley_gradient};
 
-use vol_compiler::noise_table::{hash_cell, hash_word, table_cell, unit_number};
+use vol_compiler::noise_table::{PERMUTATION, hash_cell, hash_word, unit_number};
 
 use super::fun::{floor, hold, whole_to_int};
 
@@ -116,30 +116,54 @@ fn edge_vector(code: u32) -> [f32; 3] {
     [x, y, z]
 }
 
-/// Gradient code of the corner `(i, j, k)` of a cell; `TABLE` chooses the published permutation.
+/// Gradient code of the corner `(i, j, k)` of a cell by its hash; seed not 0.
 #[inline(always)]
-fn corner_code<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) -> u32 {
-    let (x, y, z) = (c.corner[0] + i, c.corner[1] + j, c.corner[2] + k);
-    if TABLE { table_cell(x, y, z) } else { hash_cell(x, y, z, seed) }
+fn hashed_code(corner: [i32; 3], [i, j, k]: [i32; 3], seed: u32) -> u32 {
+    hash_cell(corner[0] + i, corner[1] + j, corner[2] + k, seed)
 }
 
-/// Value at one corner.
+/// Whole coordinates of the cell of a point.
 #[inline(always)]
-fn corner<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) -> f32 {
-    let code = corner_code::<TABLE>(c, i, j, k, seed);
-    edge_value(code, c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32)
+pub fn cell_corner(p: [f32; 3]) -> [i32; 3] {
+    cell_of(p).corner
 }
 
-/// Value of the noise, table or hash.
+/// Gradient codes of all corners of a cell by the published permutation, four bits each: that of `(i, j, k)` starts at
+/// bit `4 (i + 2 j + 4 k)`. Tables are looked up one point after the other; all else vectorises.
+pub fn table_codes(corner: [i32; 3]) -> u32 {
+    let [x, y, z] = corner;
+    let look = |i: i32| i32::from(PERMUTATION[(i & 255) as usize]);
+    let mut codes = 0;
+    for i in 0..2 {
+        let by_x = look(x + i);
+        for j in 0..2 {
+            let by_y = look(by_x + y + j);
+            for k in 0..2 {
+                codes |= (look(by_y + z + k) & 15) << (4 * (i + 2 * j + 4 * k));
+            }
+        }
+    }
+    codes as u32
+}
+
+/// The code of a corner among [`table_codes`].
 #[inline(always)]
-fn lattice<const TABLE: bool>(p: [f32; 3], seed: u32) -> f32 {
-    let c = cell_of(p);
+fn packed_code(codes: u32, [i, j, k]: [i32; 3]) -> u32 {
+    (codes >> (4 * (i + 2 * j + 4 * k))) & 15
+}
+
+/// Value of the noise in a cell, given the codes of its corners.
+#[inline(always)]
+fn lattice(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> f32 {
     let [u, v, w] = c.fade;
+    let corner = |i: i32, j: i32, k: i32| {
+        edge_value(code([i, j, k]), c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32)
+    };
     // Blend the four edges along x.
-    let e00 = lerp(u, corner::<TABLE>(&c, 0, 0, 0, seed), corner::<TABLE>(&c, 1, 0, 0, seed));
-    let e10 = lerp(u, corner::<TABLE>(&c, 0, 1, 0, seed), corner::<TABLE>(&c, 1, 1, 0, seed));
-    let e01 = lerp(u, corner::<TABLE>(&c, 0, 0, 1, seed), corner::<TABLE>(&c, 1, 0, 1, seed));
-    let e11 = lerp(u, corner::<TABLE>(&c, 0, 1, 1, seed), corner::<TABLE>(&c, 1, 1, 1, seed));
+    let e00 = lerp(u, corner(0, 0, 0), corner(1, 0, 0));
+    let e10 = lerp(u, corner(0, 1, 0), corner(1, 1, 0));
+    let e01 = lerp(u, corner(0, 0, 1), corner(1, 0, 1));
+    let e11 = lerp(u, corner(0, 1, 1), corner(1, 1, 1));
     // Blend along y, then along z.
     lerp(w, lerp(v, e00, e10), lerp(v, e01, e11))
 }
@@ -154,7 +178,20 @@ fn lattice<const TABLE: bool>(p: [f32; 3], seed: u32) -> f32 {
 /// * source: K. Perlin 2002; published fact `noise(3.14, 42, 7) = 0.13691995878400012`
 #[inline(always)]
 pub fn perlin(p: [f32; 3], seed: u32) -> f32 {
-    if seed == 0 { lattice::<true>(p, 0) } else { lattice::<false>(p, seed) }
+    if seed == 0 { perlin_of_codes(p, table_codes(cell_corner(p))) } else { perlin_hashed(p, seed) }
+}
+
+/// [`perlin`] with a seed that is not 0.
+#[inline(always)]
+pub fn perlin_hashed(p: [f32; 3], seed: u32) -> f32 {
+    let c = cell_of(p);
+    lattice(&c, |ijk| hashed_code(c.corner, ijk, seed))
+}
+
+/// [`perlin`] with seed 0, given the [`table_codes`] of the point's cell.
+#[inline(always)]
+pub fn perlin_of_codes(p: [f32; 3], codes: u32) -> f32 {
+    lattice(&cell_of(p), |ijk| packed_code(codes, ijk))
 }
 
 /// A value with what its gradient is made of: blended corner gradients, and the slopes by which
@@ -164,14 +201,6 @@ struct Blend<const N: usize> {
     value: f32,
     gradient: [f32; N],
     slope: [f32; N],
-}
-
-/// Value and gradient at one corner.
-#[inline(always)]
-fn corner_blend<const TABLE: bool>(c: &Cell, i: i32, j: i32, k: i32, seed: u32) -> Blend<3> {
-    let code = corner_code::<TABLE>(c, i, j, k, seed);
-    let value = edge_value(code, c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32);
-    Blend { value, gradient: edge_vector(code), slope: [0.0; 3] }
 }
 
 /// Blend two neighbours along one axis and note the slope there.
@@ -184,12 +213,15 @@ fn blend<const N: usize>(axis: usize, t: f32, a: Blend<N>, b: Blend<N>) -> Blend
     Blend { value: a.value + (t * rise), gradient: mix(a.gradient, b.gradient), slope }
 }
 
-/// Value and gradient of the noise, table or hash.
+/// Value and gradient of the noise in a cell, given the codes of its corners.
 #[inline(always)]
-fn lattice_gradient<const TABLE: bool>(p: [f32; 3], seed: u32) -> [f32; 4] {
-    let c = cell_of(p);
+fn lattice_gradient(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> [f32; 4] {
     let [u, v, w] = c.fade;
-    let at = |i: i32, j: i32, k: i32| corner_blend::<TABLE>(&c, i, j, k, seed);
+    let at = |i: i32, j: i32, k: i32| {
+        let code = code([i, j, k]);
+        let value = edge_value(code, c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32);
+        Blend { value, gradient: edge_vector(code), slope: [0.0; 3] }
+    };
     // Blend the four edges along x.
     let e00 = blend(0, u, at(0, 0, 0), at(1, 0, 0));
     let e10 = blend(0, u, at(0, 1, 0), at(1, 1, 0));
@@ -211,7 +243,24 @@ fn lattice_gradient<const TABLE: bool>(p: [f32; 3], seed: u32) -> [f32; 4] {
 /// * error: 1.5e-6 per component against f64 at the same f32 point (test `gradients_match_f64`)
 #[inline(always)]
 pub fn perlin_gradient(p: [f32; 3], seed: u32) -> [f32; 4] {
-    if seed == 0 { lattice_gradient::<true>(p, 0) } else { lattice_gradient::<false>(p, seed) }
+    if seed == 0 {
+        perlin_gradient_of_codes(p, table_codes(cell_corner(p)))
+    } else {
+        perlin_gradient_hashed(p, seed)
+    }
+}
+
+/// [`perlin_gradient`] with a seed that is not 0.
+#[inline(always)]
+pub fn perlin_gradient_hashed(p: [f32; 3], seed: u32) -> [f32; 4] {
+    let c = cell_of(p);
+    lattice_gradient(&c, |ijk| hashed_code(c.corner, ijk, seed))
+}
+
+/// [`perlin_gradient`] with seed 0, given the [`table_codes`] of the point's cell.
+#[inline(always)]
+pub fn perlin_gradient_of_codes(p: [f32; 3], codes: u32) -> [f32; 4] {
+    lattice_gradient(&cell_of(p), |ijk| packed_code(codes, ijk))
 }
 
 /// Number of octaves as an integer: whole part held within 0..=32.

@@ -201,7 +201,7 @@ pub(crate) struct Batches {
 
 impl Batches {
     /// About 4000 points at once: enough to pay for the interpreter, small enough for the cache.
-    pub(crate) const DEFAULT: Self = Self { rays: 256, nodes: 16 };
+    pub(crate) const DEFAULT: Self = Self { rays: 64, nodes: 16 };
 }
 
 /// The integrator at work: a scene, the evaluator of its functions, and what has been counted.

@@ -5,6 +5,7 @@
 //! search vectorise.
 
 use super::{LANES, Operands, Out};
+use crate::isa::{Isa, kernel};
 use crate::math::curve::{self, CurvePoint, Search, feet, nodes};
 use vol_compiler::curve::{Node, Piece};
 use vol_compiler::ops::MAX_RESULTS;
@@ -39,46 +40,41 @@ impl Searches {
     fn point(&self, lane: usize) -> [f32; 3] {
         [self.point[0][lane], self.point[1][lane], self.point[2][lane]]
     }
+}
 
-    /// Visits the next piece in the first `n` lanes. Out of line, so that the compiler sees nothing
-    /// but the loop: inside the loop over pieces it does not vectorise.
-    #[inline(never)]
-    fn visit(&mut self, n: usize, piece: Piece, index: u32) {
+kernel! {
+    /// Visits the next piece in the first `n` lanes.
+    fn Visit<'a>((all, n, piece, index): (&'a mut Searches, usize, Piece, u32)) {
         for lane in 0..n.min(LANES) {
             let search = Search {
-                dist_sq: self.dist_sq[lane],
-                t: self.t[lane],
-                piece: self.piece[lane],
-                left_at_last: self.left_at_last[lane] != 0,
+                dist_sq: all.dist_sq[lane],
+                t: all.t[lane],
+                piece: all.piece[lane],
+                left_at_last: all.left_at_last[lane] != 0,
             };
-            let next = search.visit(self.point(lane), &piece, index);
-            self.dist_sq[lane] = next.dist_sq;
-            self.t[lane] = next.t;
-            self.piece[lane] = next.piece;
-            self.left_at_last[lane] = u32::from(next.left_at_last);
+            let next = search.visit(all.point(lane), &piece, index);
+            all.dist_sq[lane] = next.dist_sq;
+            all.t[lane] = next.t;
+            all.piece[lane] = next.piece;
+            all.left_at_last[lane] = u32::from(next.left_at_last);
         }
     }
 }
 
-/// Curves of at most so many pieces are described on every piece in loops that vectorise; on longer
-/// ones that is more work than each lane's own piece.
-const FEW: usize = 4;
-
-/// Describes the foot in the first `n` lanes on one piece and keeps it where that piece won. Out of
-/// line and with arrays of its own for the same reason as [`Searches::visit`].
-#[inline(never)]
-fn describe(
-    searches: &Searches,
-    n: usize,
-    piece: Piece,
-    index: u32,
-    found: &mut [[f32; LANES]; MAX_RESULTS],
-) {
-    for lane in 0..n.min(LANES) {
-        let values = values(&curve::describe(searches.point(lane), &piece, searches.t[lane]));
-        let won = searches.piece[lane] == index;
-        for (found, value) in found.iter_mut().zip(values) {
-            found[lane] = if won { value } else { found[lane] };
+kernel! {
+    /// Describes the foot in the first `n` lanes on one piece and keeps it where that piece won. Arrays of its own, so
+    /// that the compiler need not fear that they overlap.
+    fn Describe<'a>(
+        (searches, n, piece, index, found): (
+            &'a Searches, usize, Piece, u32, &'a mut [[f32; LANES]; MAX_RESULTS],
+        )
+    ) {
+        for lane in 0..n.min(LANES) {
+            let values = values(&curve::describe(searches.point(lane), &piece, searches.t[lane]));
+            let won = searches.piece[lane] == index;
+            for (found, value) in found.iter_mut().zip(values) {
+                found[lane] = if won { value } else { found[lane] };
+            }
         }
     }
 }
@@ -98,7 +94,7 @@ const SHARED_LEAVES: usize = 4;
 
 impl Bounds {
     /// From the leaf that each point is likely to be near: neighbouring points share it.
-    fn new(searches: &Searches, n: usize, pieces: &[Piece], nodes: &[Node]) -> Self {
+    fn new(isa: Isa, searches: &Searches, n: usize, pieces: &[Piece], nodes: &[Node]) -> Self {
         let mut bounds = Self([f32::MAX; LANES]);
         let (mut shared, mut last) = (0, usize::MAX);
         for lane in 0..n.min(LANES) {
@@ -109,7 +105,7 @@ impl Bounds {
             if shared < SHARED_LEAVES {
                 (shared, last) = (shared + 1, leaf);
                 for piece in &pieces[nodes[leaf].first as usize..nodes[leaf].end as usize] {
-                    bounds.lower_by_foot(searches, n, *piece);
+                    isa.run::<LowerByFoot>((&mut bounds, searches, n, *piece));
                 }
             } else {
                 let nearest = nodes::nearest_in(searches.point(lane), pieces, &nodes[leaf]);
@@ -118,30 +114,34 @@ impl Bounds {
         }
         bounds
     }
+}
 
-    /// Out of line for the same reason as [`Searches::visit`].
-    #[inline(never)]
-    fn lower_by_foot(&mut self, searches: &Searches, n: usize, piece: Piece) {
+kernel! {
+    fn LowerByFoot<'a>((bounds, searches, n, piece): (&'a mut Bounds, &'a Searches, usize, Piece)) {
         for lane in 0..n.min(LANES) {
             let found = nodes::bound_of(curve::foot(searches.point(lane), &piece).dist_sq);
-            self.0[lane] = if found < self.0[lane] { found } else { self.0[lane] };
+            bounds.0[lane] = if found < bounds.0[lane] { found } else { bounds.0[lane] };
         }
     }
+}
 
+kernel! {
     /// Lowers them to what has been found.
-    #[inline(never)]
-    fn lower(&mut self, searches: &Searches, n: usize) {
+    fn Lower<'a>((bounds, searches, n): (&'a mut Bounds, &'a Searches, usize)) {
         for lane in 0..n.min(LANES) {
             let found = nodes::bound_of(searches.dist_sq[lane]);
-            self.0[lane] = if found < self.0[lane] { found } else { self.0[lane] };
+            bounds.0[lane] = if found < bounds.0[lane] { found } else { bounds.0[lane] };
         }
     }
+}
 
+kernel! {
     /// In which lanes the winner may be in a box, and in how many: 0 or 1 each.
-    #[inline(never)]
-    fn reach(&self, searches: &Searches, n: usize, node: &Node, near: &mut [u32; LANES]) -> usize {
+    fn Reach<'a>(
+        (bounds, searches, n, node, near): (&'a Bounds, &'a Searches, usize, &'a Node, &'a mut [u32; LANES])
+    ) -> usize {
         for (lane, near) in near.iter_mut().enumerate().take(n.min(LANES)) {
-            *near = u32::from(nodes::box_dist_sq(searches.point(lane), node) <= self.0[lane]);
+            *near = u32::from(nodes::box_dist_sq(searches.point(lane), node) <= bounds.0[lane]);
         }
         near.iter().sum::<u32>() as usize
     }
@@ -150,7 +150,15 @@ impl Bounds {
 impl Searches {
     /// Visits the pieces of a leaf in the lanes that want it, side by side so that loops are as short as
     /// they are few.
-    fn visit_leaf(&mut self, n: usize, near: &[u32; LANES], few: &mut Self, pieces: &[Piece], first: u32) {
+    fn visit_leaf(
+        &mut self,
+        isa: Isa,
+        n: usize,
+        near: &[u32; LANES],
+        few: &mut Self,
+        pieces: &[Piece],
+        first: u32,
+    ) {
         let mut lanes = [0; LANES];
         let mut count = 0;
         for lane in (0..n.min(LANES)).filter(|&lane| near[lane] != 0) {
@@ -159,7 +167,7 @@ impl Searches {
             count += 1;
         }
         for (index, piece) in (first..).zip(pieces) {
-            few.visit(count, *piece, index);
+            isa.run::<Visit>((few, count, *piece, index));
         }
         for (at, &lane) in lanes[..count].iter().enumerate() {
             self.copy(lane, few, at);
@@ -179,44 +187,59 @@ impl Searches {
 }
 
 /// [`nodes::search`] in each lane: a box is entered if some lane wants it, but its pieces are visited in those lanes only.
-fn search(x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
+fn search(isa: Isa, x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     let n = x[0].len().min(LANES);
     let mut searches = Searches::new(x);
     // Visit the pieces along the curve.
     if nodes.is_empty() {
         for (index, piece) in (0u32..).zip(pieces) {
-            searches.visit(n, *piece, index);
+            isa.run::<Visit>((&mut searches, n, *piece, index));
         }
         return searches;
     }
     // Pass over boxes that are farther than a foot.
-    let mut bounds = Bounds::new(&searches, n, pieces, nodes);
+    let mut bounds = Bounds::new(isa, &searches, n, pieces, nodes);
     let (mut few, mut near, mut at) = (Searches::new(x), [0; LANES], 0);
     while at < nodes.len() {
         let node = &nodes[at];
-        if bounds.reach(&searches, n, node, &mut near) == 0 {
+        if isa.run::<Reach>((&bounds, &searches, n, node, &mut near)) == 0 {
             at = node.skip as usize;
             continue;
         }
         if node.skip as usize == at + 1 {
             let leaf = &pieces[node.first as usize..node.end as usize];
-            searches.visit_leaf(n, &near, &mut few, leaf, node.first);
-            bounds.lower(&searches, n);
+            searches.visit_leaf(isa, n, &near, &mut few, leaf, node.first);
+            isa.run::<Lower>((&mut bounds, &searches, n));
         }
         at += 1;
     }
     searches
 }
 
+/// The pieces that won in some lane, unless there are so many that each lane is better described by itself.
+fn winners(searches: &Searches, n: usize) -> Option<([u32; MOST_WINNERS], usize)> {
+    let (mut all, mut count) = ([0; MOST_WINNERS], 0);
+    for &piece in &searches.piece[..n] {
+        if !all[..count].contains(&piece) {
+            *all.get_mut(count)? = piece;
+            count += 1;
+        }
+    }
+    Some((all, count))
+}
+
+/// So many pieces are described in loops that vectorise.
+const MOST_WINNERS: usize = 6;
+
 /// [`curve::closest`] in each lane.
-pub(super) fn closest(x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
+pub(super) fn closest(isa: Isa, x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
     let (n, pieces) = (x[0].len().min(LANES), parts.0);
-    let searches = search(x, parts);
+    let searches = search(isa, x, parts);
     // Describe the foot on the winner.
-    if (1..=FEW).contains(&pieces.len()) {
+    if let Some((all, count)) = winners(&searches, n).filter(|_| !pieces.is_empty()) {
         let mut found = [[0.0; LANES]; MAX_RESULTS];
-        for (index, piece) in (0u32..).zip(pieces) {
-            describe(&searches, n, *piece, index, &mut found);
+        for &index in &all[..count] {
+            isa.run::<Describe>((&searches, n, pieces[index as usize], index, &mut found));
         }
         for (out, found) in out.iter_mut().zip(&found) {
             out.0[..n].copy_from_slice(&found[..n]);
@@ -236,9 +259,14 @@ pub(super) fn closest(x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node]
 }
 
 /// [`curve::closest_gradient`] in each lane: asked for at hits only, so it may be slower.
-pub(super) fn closest_gradient(x: &Operands<'_>, out: &mut Out, parts: (&[Piece], &[Node])) -> usize {
+pub(super) fn closest_gradient(
+    isa: Isa,
+    x: &Operands<'_>,
+    out: &mut Out,
+    parts: (&[Piece], &[Node]),
+) -> usize {
     let (n, pieces) = (x[0].len().min(LANES), parts.0);
-    let searches = search(x, parts);
+    let searches = search(isa, x, parts);
     for lane in 0..n {
         let found = match pieces.get(searches.piece[lane] as usize) {
             Some(piece) => curve::slopes(searches.point(lane), piece, searches.t[lane]),

@@ -4,6 +4,7 @@
 //! loops are turned around so that the lanes vectorise.
 
 use super::{LANES, Operands, Out};
+use crate::isa::{Isa, Kernel, kernel};
 use crate::math::noise::{self, Nearest, next_octave, octave_count};
 use std::array;
 
@@ -11,44 +12,106 @@ use std::array;
 type Row<'a> = &'a [f32];
 
 /// [`noise::perlin`] in each lane.
-pub(super) fn perlin(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
-    values(x[0], x[1], x[2], &mut out[0].0, seed);
+pub(super) fn perlin(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
+    values(isa, [x[0], x[1], x[2]], &mut out[0].0, seed);
     1
 }
 
 /// [`noise::perlin_gradient`] in each lane.
-pub(super) fn perlin_gradient(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
+pub(super) fn perlin_gradient(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let [value, dx, dy, dz, ..] = out;
-    gradients(x[0], x[1], x[2], [&mut value.0, &mut dx.0, &mut dy.0, &mut dz.0], seed);
+    gradients(isa, [x[0], x[1], x[2]], [&mut value.0, &mut dx.0, &mut dy.0, &mut dz.0], seed);
     4
 }
 
-/// The loop over lanes. Out of line, so that the compiler sees nothing but the loop; seed 0 is
-/// another algorithm and has a loop of its own.
-#[inline(never)]
-fn values(x: Row<'_>, y: Row<'_>, z: Row<'_>, out: &mut [f32; LANES], seed: u32) {
-    let lanes = out.iter_mut().zip(x).zip(y).zip(z);
+fn values(isa: Isa, point: [Row<'_>; 3], out: &mut [f32; LANES], seed: u32) {
     if seed == 0 {
-        lanes.for_each(|(((out, &x), &y), &z)| *out = noise::perlin([x, y, z], 0));
+        isa.run::<CodedValues>((point, &codes(isa, point), out));
     } else {
-        lanes.for_each(|(((out, &x), &y), &z)| *out = noise::perlin([x, y, z], seed));
+        isa.run::<HashedValues>((point, out, seed));
     }
 }
 
-/// As [`values`], with the gradient.
-#[inline(never)]
-fn gradients(x: Row<'_>, y: Row<'_>, z: Row<'_>, out: [&mut [f32; LANES]; 4], seed: u32) {
-    let [value, dx, dy, dz] = out;
-    let results = value.iter_mut().zip(dx).zip(dy).zip(dz);
-    let lanes = results.zip(x.iter().zip(y).zip(z));
+fn gradients(isa: Isa, point: [Row<'_>; 3], out: [&mut [f32; LANES]; 4], seed: u32) {
     if seed == 0 {
-        lanes.for_each(|((((value, dx), dy), dz), ((&x, &y), &z))| {
-            [*value, *dx, *dy, *dz] = noise::perlin_gradient([x, y, z], 0);
-        });
+        isa.run::<CodedGradients>((point, &codes(isa, point), out));
     } else {
-        lanes.for_each(|((((value, dx), dy), dz), ((&x, &y), &z))| {
-            [*value, *dx, *dy, *dz] = noise::perlin_gradient([x, y, z], seed);
-        });
+        isa.run::<HashedGradients>((point, out, seed));
+    }
+}
+
+/// [`noise::table_codes`] in each lane.
+fn codes(isa: Isa, point: [Row<'_>; 3]) -> [u32; LANES] {
+    let mut corners = [[0; LANES]; 3];
+    isa.run::<Corners>((point, &mut corners));
+    let [x, y, z] = &corners;
+    let mut codes = [0; LANES];
+    let mut last = ([0; 3], noise::table_codes([0; 3]));
+    for lane in 0..point[0].len().min(LANES) {
+        // Neighbours on a ray are often in the same cell.
+        let corner = [x[lane], y[lane], z[lane]];
+        if corner != last.0 {
+            last = (corner, noise::table_codes(corner));
+        }
+        codes[lane] = last.1;
+    }
+    codes
+}
+
+/// Rows of the same number of points, at most a batch.
+#[inline(always)]
+fn even([x, y, z]: [Row<'_>; 3]) -> (usize, [Row<'_>; 3]) {
+    let n = x.len().min(y.len()).min(z.len()).min(LANES);
+    (n, [&x[..n], &y[..n], &z[..n]])
+}
+
+kernel! {
+    fn Corners<'a>((point, corners): ([Row<'a>; 3], &'a mut [[i32; LANES]; 3])) {
+        let (n, [x, y, z]) = even(point);
+        for lane in 0..n {
+            [corners[0][lane], corners[1][lane], corners[2][lane]] =
+                noise::cell_corner([x[lane], y[lane], z[lane]]);
+        }
+    }
+}
+
+kernel! {
+    fn CodedValues<'a>((point, codes, out): ([Row<'a>; 3], &'a [u32; LANES], &'a mut [f32; LANES])) {
+        let (n, [x, y, z]) = even(point);
+        for lane in 0..n {
+            out[lane] = noise::perlin_of_codes([x[lane], y[lane], z[lane]], codes[lane]);
+        }
+    }
+}
+
+kernel! {
+    fn HashedValues<'a>((point, out, seed): ([Row<'a>; 3], &'a mut [f32; LANES], u32)) {
+        let (n, [x, y, z]) = even(point);
+        for lane in 0..n {
+            out[lane] = noise::perlin_hashed([x[lane], y[lane], z[lane]], seed);
+        }
+    }
+}
+
+kernel! {
+    fn CodedGradients<'a>((point, codes, out): ([Row<'a>; 3], &'a [u32; LANES], [&'a mut [f32; LANES]; 4])) {
+        let (n, [x, y, z]) = even(point);
+        let [value, dx, dy, dz] = out;
+        for lane in 0..n {
+            let found = noise::perlin_gradient_of_codes([x[lane], y[lane], z[lane]], codes[lane]);
+            [value[lane], dx[lane], dy[lane], dz[lane]] = found;
+        }
+    }
+}
+
+kernel! {
+    fn HashedGradients<'a>((point, out, seed): ([Row<'a>; 3], [&'a mut [f32; LANES]; 4], u32)) {
+        let (n, [x, y, z]) = even(point);
+        let [value, dx, dy, dz] = out;
+        for lane in 0..n {
+            let found = noise::perlin_gradient_hashed([x[lane], y[lane], z[lane]], seed);
+            [value[lane], dx[lane], dy[lane], dz[lane]] = found;
+        }
     }
 }
 
@@ -76,28 +139,45 @@ impl Octaves {
         self.count.iter().copied().max().unwrap_or(0)
     }
 
+    /// Slopes grow with the frequency.
+    #[inline(always)]
+    fn steepness(&self) -> [f32; LANES] {
+        array::from_fn(|lane| self.amplitude[lane] * self.frequency[lane])
+    }
+}
+
+kernel! {
     /// The points of the current octave.
-    fn scale(&mut self, x: &Operands<'_>) {
-        for (scaled, row) in self.scaled.iter_mut().zip(x) {
-            for ((scaled, &coordinate), &frequency) in scaled.iter_mut().zip(*row).zip(&self.frequency) {
+    fn Scale<'a>((octaves, x): (&'a mut Octaves, &'a Operands<'a>)) {
+        for (scaled, row) in octaves.scaled.iter_mut().zip(x) {
+            for ((scaled, &coordinate), &frequency) in scaled.iter_mut().zip(*row).zip(&octaves.frequency) {
                 *scaled = coordinate * frequency;
             }
         }
     }
+}
 
+kernel! {
     /// Adds an octave to a sum in the lanes that have so many.
-    fn add(&self, octave: i32, sum: &mut [f32; LANES], factor: &[f32; LANES], noise: &[f32; LANES]) {
+    fn Add<'a>(
+        (octaves, octave, sum, factor, noise): (
+            &'a Octaves, i32, &'a mut [f32; LANES], &'a [f32; LANES], &'a [f32; LANES],
+        )
+    ) {
         for lane in 0..LANES {
             let more = sum[lane] + (factor[lane] * noise[lane]);
-            sum[lane] = if octave < self.count[lane] { more } else { sum[lane] };
+            sum[lane] = if octave < octaves.count[lane] { more } else { sum[lane] };
         }
     }
+}
 
-    fn step(&mut self, lacunarity: Row<'_>, gain: Row<'_>) {
-        for (amplitude, &gain) in self.amplitude.iter_mut().zip(gain) {
+kernel! {
+    /// Amplitudes and frequencies of the next octave.
+    fn Step<'a>((octaves, lacunarity, gain): (&'a mut Octaves, Row<'a>, Row<'a>)) {
+        for (amplitude, &gain) in octaves.amplitude.iter_mut().zip(gain) {
             *amplitude = next_octave(*amplitude, gain);
         }
-        for (frequency, &lacunarity) in self.frequency.iter_mut().zip(lacunarity) {
+        for (frequency, &lacunarity) in octaves.frequency.iter_mut().zip(lacunarity) {
             *frequency = next_octave(*frequency, lacunarity);
         }
     }
@@ -105,7 +185,7 @@ impl Octaves {
 
 /// A kernel of `IN` coordinates in each lane; one that is inlined, so that the loop vectorises.
 #[inline(always)]
-pub(super) fn each<const IN: usize, const OUT: usize>(
+fn each<const IN: usize, const OUT: usize>(
     x: &Operands<'_>,
     out: &mut Out,
     kernel: impl Fn([f32; IN]) -> [f32; OUT],
@@ -125,27 +205,56 @@ pub(super) fn each<const IN: usize, const OUT: usize>(
     OUT
 }
 
+/// Noises that are loops over lanes as they are.
+macro_rules! noises {
+    ($($name:ident: $kernel:expr;)*) => { $(
+        kernel! {
+            pub(super) fn $name<'a>((x, out, seed): (&'a Operands<'a>, &'a mut Out, u32)) -> usize {
+                each(x, out, |p| $kernel(p, seed))
+            }
+        }
+    )* };
+}
+
+noises! {
+    Perlin4: |p, seed| [noise::perlin4(p, seed)];
+    Perlin4Gradient: noise::perlin4_gradient;
+    Value: |p, seed| [noise::value(p, seed)];
+    ValueGradient: noise::value_gradient;
+    Simplex: |p, seed| [noise::simplex(p, seed)];
+    SimplexGradient: noise::simplex_gradient;
+    Hash: |p, seed| [noise::hash(p, seed)];
+}
+
 /// The first `OUT` results of [`noise::worley_gradient`] in each lane: cells outside, lanes inside.
-pub(super) fn worley<const OUT: usize>(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
-    let mut found = [Nearest::default(); LANES];
-    for (found, ((&x, &y), &z)) in found.iter_mut().zip(x[0].iter().zip(x[1]).zip(x[2])) {
-        *found = Nearest::new([x, y, z]);
-    }
-    for step in Nearest::STEPS {
-        for found in &mut found {
-            *found = found.with(step, seed);
+pub(super) struct Worley<const OUT: usize>;
+
+impl<const OUT: usize> Kernel for Worley<OUT> {
+    type Args<'a> = (&'a Operands<'a>, &'a mut Out, u32);
+    type Out = usize;
+
+    #[inline(always)]
+    fn run((x, out, seed): Self::Args<'_>) -> usize {
+        let mut found = [Nearest::default(); LANES];
+        for (found, ((&x, &y), &z)) in found.iter_mut().zip(x[0].iter().zip(x[1]).zip(x[2])) {
+            *found = Nearest::new([x, y, z]);
         }
-    }
-    for (lane, found) in found.iter().enumerate() {
-        for (out, part) in out[..OUT].iter_mut().zip(found.gradient()) {
-            out.0[lane] = part;
+        for step in Nearest::STEPS {
+            for found in &mut found {
+                *found = found.with(step, seed);
+            }
         }
+        for (lane, found) in found.iter().enumerate() {
+            for (out, part) in out[..OUT].iter_mut().zip(found.gradient()) {
+                out.0[lane] = part;
+            }
+        }
+        OUT
     }
-    OUT
 }
 
 /// [`noise::fbm`] in each lane.
-pub(super) fn fbm(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
+pub(super) fn fbm(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let n = x[0].len();
     let mut octaves = Octaves::new(x[3]);
     let mut noise = [0.0; LANES];
@@ -153,38 +262,34 @@ pub(super) fn fbm(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     sum.fill(0.0);
     for octave in 0..octaves.most() {
         // Add one octave.
-        octaves.scale(x);
+        isa.run::<Scale>((&mut octaves, x));
         let [px, py, pz] = &octaves.scaled;
-        values(&px[..n], &py[..n], &pz[..n], &mut noise, seed);
-        octaves.add(octave, sum, &octaves.amplitude, &noise);
+        values(isa, [&px[..n], &py[..n], &pz[..n]], &mut noise, seed);
+        isa.run::<Add>((&octaves, octave, sum, &octaves.amplitude, &noise));
         // Step to the next.
-        octaves.step(x[4], x[5]);
+        isa.run::<Step>((&mut octaves, x[4], x[5]));
     }
     1
 }
 
 /// [`noise::fbm_gradient`] in each lane.
-pub(super) fn fbm_gradient(x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
+pub(super) fn fbm_gradient(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let n = x[0].len();
     let mut octaves = Octaves::new(x[3]);
     let mut noise = [[0.0; LANES]; 4];
-    let mut steepness = [0.0; LANES];
     out[..4].iter_mut().for_each(|sum| sum.0.fill(0.0));
     for octave in 0..octaves.most() {
         // Add one octave; the chain rule brings the frequency down.
-        octaves.scale(x);
+        isa.run::<Scale>((&mut octaves, x));
         let [px, py, pz] = &octaves.scaled;
-        gradients(&px[..n], &py[..n], &pz[..n], noise.each_mut(), seed);
-        let factors = octaves.amplitude.iter().zip(&octaves.frequency);
-        for (steepness, (&amplitude, &frequency)) in steepness.iter_mut().zip(factors) {
-            *steepness = amplitude * frequency;
-        }
-        octaves.add(octave, &mut out[0].0, &octaves.amplitude, &noise[0]);
+        gradients(isa, [&px[..n], &py[..n], &pz[..n]], noise.each_mut(), seed);
+        let steepness = octaves.steepness();
+        isa.run::<Add>((&octaves, octave, &mut out[0].0, &octaves.amplitude, &noise[0]));
         for i in 1..4 {
-            octaves.add(octave, &mut out[i].0, &steepness, &noise[i]);
+            isa.run::<Add>((&octaves, octave, &mut out[i].0, &steepness, &noise[i]));
         }
         // Step to the next.
-        octaves.step(x[4], x[5]);
+        isa.run::<Step>((&mut octaves, x[4], x[5]));
     }
     4
 }

@@ -1,0 +1,116 @@
+//! Vector instructions: which ones loops over points are compiled for, chosen when the program runs.
+//!
+//! A loop that is written for one point after the other is compiled several times, for every set of
+//! instructions in [`Isa::all`]; [`Isa::run`] calls the right one. All compute the same bits: lanes are independent and
+//! nothing is fused or reordered (test `all_instruction_sets_compute_the_same`).
+
+use pulp::NullaryFnOnce;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::{V3, V4};
+
+/// A set of vector instructions that this machine has.
+#[derive(Clone, Copy, Debug)]
+pub struct Isa(Kind);
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// What every machine of this kind has.
+    Baseline,
+    /// AVX2: 8 numbers at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx2(V3),
+    /// AVX-512: 16 numbers at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx512(V4),
+}
+
+impl Isa {
+    /// What every machine of this kind has: on x86-64 SSE2 with 4 numbers at a time.
+    pub const BASELINE: Self = Self(Kind::Baseline);
+
+    /// The widest that this machine has.
+    #[must_use]
+    pub fn best() -> Self {
+        Self::all().pop().unwrap_or(Self::BASELINE)
+    }
+
+    /// All that this machine has, the widest last.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::BASELINE];
+        #[cfg(target_arch = "x86_64")]
+        {
+            all.extend(V3::try_new().map(|simd| Self(Kind::Avx2(simd))));
+            all.extend(V4::try_new().map(|simd| Self(Kind::Avx512(simd))));
+        }
+        all
+    }
+
+    /// `baseline`, `avx2` or `avx512`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            Kind::Baseline => "baseline",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(_) => "avx512",
+        }
+    }
+
+    /// Calls a loop compiled for these instructions.
+    #[inline(always)]
+    pub(crate) fn run<K: Kernel>(self, args: K::Args<'_>) -> K::Out {
+        match self.0 {
+            Kind::Baseline => K::run(args),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(simd) => simd.vectorize(Call::<K>(args)),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(simd) => simd.vectorize(Call::<K>(args)),
+        }
+    }
+}
+
+/// A loop over points; see [`kernel`].
+pub(crate) trait Kernel {
+    /// What it reads and writes.
+    type Args<'a>;
+    /// What it returns.
+    type Out;
+
+    /// The loop. Inlined by force, and so must be everything that it calls: what is not keeps the instructions
+    /// of the baseline.
+    fn run(args: Self::Args<'_>) -> Self::Out;
+}
+
+/// A kernel with its arguments, as `pulp` wants it.
+struct Call<'a, K: Kernel>(K::Args<'a>);
+
+impl<K: Kernel> NullaryFnOnce for Call<'_, K> {
+    type Output = K::Out;
+
+    #[inline(always)]
+    fn call(self) -> K::Out {
+        K::run(self.0)
+    }
+}
+
+/// Defines a [`Kernel`]: written as a function of one tuple whose references live for the named lifetime, to be
+/// called by [`Isa::run`] with the name as the type.
+macro_rules! kernel {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident<$life:lifetime>($args:tt: $type:ty) $(-> $out:ty)? $body:block) => {
+        $(#[$meta])*
+        $vis struct $name;
+
+        impl $crate::isa::Kernel for $name {
+            type Args<$life> = $type;
+            type Out = $crate::isa::kernel!(@out $($out)?);
+
+            #[inline(always)]
+            fn run($args: Self::Args<'_>) -> Self::Out $body
+        }
+    };
+    (@out) => { () };
+    (@out $out:ty) => { $out };
+}
+pub(crate) use kernel;

@@ -106,9 +106,9 @@ fn frame(program: &Program) -> Frame {
             occlusion: 0.0,
         }],
         light_grids: Vec::new(),
-        skips: Skips::ALL,
         background: [13.0, 14.0, 15.0],
         bounds: whole,
+        skips: Skips::ALL,
     }
 }
 

@@ -12,7 +12,7 @@ use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
-use vol_runtime_cpu::{Method, NoMajorant};
+use vol_runtime_cpu::{Method, NoMajorant, PixelCost};
 
 use crate::failure::Failure;
 
@@ -61,6 +61,8 @@ pub struct Rendered {
     /// Standard error of the colour, root mean square over the picture relative to that of the colour;
     /// known of random paths only.
     pub standard_error: Option<f32>,
+    /// What each pixel cost, rows from the top; only of [`Renderer::render_costs`].
+    pub costs: Option<Vec<PixelCost>>,
 }
 
 fn counts_of_cpu(stats: &vol_runtime_cpu::Stats) -> Counts {
@@ -187,14 +189,14 @@ impl Renderer<'_> {
             Target::Cpu(_) => {
                 let rendered = vol_runtime_cpu::render(self.program, frame, job, None, progress, cancelled);
                 let (image, stats) = rendered.ok_or(Failure::Interrupted)?;
-                Ok(Rendered { image, counts: counts_of_cpu(&stats), standard_error: None })
+                Ok(Rendered { image, counts: counts_of_cpu(&stats), standard_error: None, costs: None })
             }
             #[cfg(feature = "gpu")]
             Target::Gpu(gpu, renderer) => {
                 let rendered = renderer.render(gpu, self.program, frame, job, progress, cancelled);
                 let rendered = rendered.map_err(|error| gpu_failure(&error))?;
                 let (image, counts) = rendered.ok_or(Failure::Interrupted)?;
-                Ok(Rendered { image, counts, standard_error: None })
+                Ok(Rendered { image, counts, standard_error: None, costs: None })
             }
         }
     }
@@ -221,14 +223,35 @@ impl Renderer<'_> {
                     vol_runtime_cpu::render_by(method, self.program, frame, job, progress, cancelled);
                 let (image, stats) =
                     rendered.map_err(|error| self.no_majorant(error))?.ok_or(Failure::Interrupted)?;
-                let standard_error = match method {
-                    Method::MonteCarlo { .. } => Some(relative(stats.variance, &image)),
-                    Method::Comb | Method::FixedStep { .. } => None,
-                };
-                Ok(Rendered { image, counts: counts_of_cpu(&stats), standard_error })
+                Ok(rendered_on_cpu(method, image, &stats, None))
             }
             #[cfg(feature = "gpu")]
             Target::Gpu(..) => Err(Failure::usage("only the comb runs on the GPU")),
+        }
+    }
+
+    /// [`Renderer::render_by`] with what each pixel costs; on the CPU only.
+    ///
+    /// # Errors
+    /// Those of [`Renderer::render_by`].
+    pub fn render_costs(
+        &self,
+        method: Method,
+        frame: &Frame,
+        job: &Job,
+        progress: &(dyn Fn(u64) + Sync),
+        cancelled: &AtomicBool,
+    ) -> Result<Rendered, Failure> {
+        match &self.target {
+            Target::Cpu(_) => {
+                let rendered =
+                    vol_runtime_cpu::render_costs(method, self.program, frame, job, progress, cancelled);
+                let (image, stats, costs) =
+                    rendered.map_err(|error| self.no_majorant(error))?.ok_or(Failure::Interrupted)?;
+                Ok(rendered_on_cpu(method, image, &stats, Some(costs)))
+            }
+            #[cfg(feature = "gpu")]
+            Target::Gpu(..) => Err(Failure::usage("costs are counted on the CPU only")),
         }
     }
 
@@ -239,6 +262,19 @@ impl Renderer<'_> {
                     or take another integrator";
         Failure::content(text).with_help(help)
     }
+}
+
+fn rendered_on_cpu(
+    method: Method,
+    image: Image,
+    stats: &vol_runtime_cpu::Stats,
+    costs: Option<Vec<PixelCost>>,
+) -> Rendered {
+    let standard_error = match method {
+        Method::MonteCarlo { .. } => Some(relative(stats.variance, &image)),
+        Method::Comb | Method::FixedStep { .. } => None,
+    };
+    Rendered { image, counts: counts_of_cpu(stats), standard_error, costs }
 }
 
 /// The root of a sum of squares over the pixels and channels of a picture, relative to the picture's own.

@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Stress(Stress),
     /// Measure run time against error over a ladder of settings
     Bench(Bench),
+    /// Tell what each line of a scene costs
+    Profile(Profile),
 }
 
 /// Which scene at which moment.
@@ -119,9 +121,20 @@ pub(crate) struct Render {
     /// instead of the scene's; 0 for as many samples everywhere
     #[arg(long, value_name = "E", value_parser = values::adaptive, allow_negative_numbers = true)]
     pub(crate) adaptive: Option<f32>,
+    /// What else a picture shows, on the CPU only: an `.exr` gets channels for it beside those of the picture, a `.png`
+    /// shows it instead, in false colours
+    #[arg(long, value_enum, conflicts_with = "reference")]
+    pub(crate) aov: Option<Aov>,
     /// Write what was done and how long it took to this JSON file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,
+}
+
+/// What a picture may show beside light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Aov {
+    /// What each pixel costs: operations and evaluations of the scene's functions
+    Cost,
 }
 
 /// Settings of `--integrator fixed-step`.
@@ -277,6 +290,32 @@ pub(crate) struct Bench {
     /// Folder in which references are kept [default: `vol/references` in the user's cache]
     #[arg(long, value_name = "FOLDER")]
     pub(crate) cache: Option<PathBuf>,
+}
+
+/// Arguments of `vol profile`.
+#[derive(Debug, Args)]
+pub(crate) struct Profile {
+    /// Scene, params and moment.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
+    /// Picture size in pixels instead of the scene's
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<Size>,
+    /// CPU threads, whose times are added up [default: as many as the machine has cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Error allowed from sampling media, as with `vol render` [default: 0.01]
+    #[arg(long, value_name = "E", value_parser = values::max_error)]
+    pub(crate) max_error: Option<f32>,
+    /// Rays per pixel, as with `vol render`
+    #[arg(long, value_name = "N", value_parser = values::samples, allow_negative_numbers = true)]
+    pub(crate) samples: Option<u32>,
+    /// Error of a pixel at which it takes no more samples, as with `vol render`
+    #[arg(long, value_name = "E", value_parser = values::adaptive, allow_negative_numbers = true)]
+    pub(crate) adaptive: Option<f32>,
+    /// `human` writes two tables, `json` one object a line
+    #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
+    pub(crate) message_format: MessageFormat,
 }
 
 /// What computes the pictures of a benchmark.

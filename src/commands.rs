@@ -11,6 +11,7 @@ mod explain;
 mod fmt;
 mod method;
 mod params;
+mod profile;
 mod progress;
 mod query;
 mod render;
@@ -53,6 +54,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Diff(arguments) => diff::run(arguments),
         Command::Stress(arguments) => stress::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
+        Command::Profile(arguments) => profile::run(arguments),
     }
 }
 

@@ -3,7 +3,8 @@
 //! ```text
 //! path ──session──► Program ──frame──► Frame ──backend──► Image ──output──► PNG, EXR
 //!                                        ├──compare──► reports of `vol diff` and of the tests
-//!                                        └──stress───► what goes wrong at awkward places
+//!                                        ├──stress───► what goes wrong at awkward places
+//!                                        └──profile──► what each line costs
 //! ```
 //!
 //! Nothing in here prints or exits: a [`failure::Failure`] goes up to `main`.
@@ -14,5 +15,6 @@ pub mod compare;
 pub mod explain;
 pub mod failure;
 pub mod output;
+pub mod profile;
 pub mod session;
 pub mod stress;

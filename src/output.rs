@@ -3,10 +3,12 @@
 pub mod atomic;
 pub mod exr;
 pub mod png;
+pub mod ramp;
 
 use std::path::{Path, PathBuf};
 
 use vol_compiler::frame::Image;
+use vol_runtime_cpu::PixelCost;
 
 use crate::failure::Failure;
 
@@ -41,14 +43,20 @@ impl Format {
     }
 }
 
-/// Writes a picture in the format of the file's extension, whole or not at all.
+/// Writes a picture in the format of the file's extension, whole or not at all. With what each pixel costs an EXR file has
+/// more channels, and a PNG file shows costs in the colours of a [`ramp`].
 ///
 /// # Errors
 /// A usage failure if the format is unknown or the file cannot be written.
-pub fn write_picture(picture: &Image, path: &Path) -> Result<(), Failure> {
-    match Format::of(path)? {
-        Format::Png => atomic::write(path, |mut out| png::write(picture, &mut out)),
-        Format::Exr => atomic::write(path, |mut out| exr::write(picture, &mut out)),
+pub fn write_picture(picture: &Image, costs: Option<&[PixelCost]>, path: &Path) -> Result<(), Failure> {
+    match (Format::of(path)?, costs) {
+        (Format::Png, None) => atomic::write(path, |mut out| png::write(picture, &mut out)),
+        (Format::Png, Some(costs)) => {
+            let operations: Vec<u64> = costs.iter().map(|cost| cost.operations).collect();
+            let codes = ramp::codes(&operations);
+            atomic::write(path, |mut out| png::write_codes(&codes, [picture.width, picture.height], &mut out))
+        }
+        (Format::Exr, _) => atomic::write(path, |mut out| exr::write(picture, costs, &mut out)),
     }
 }
 

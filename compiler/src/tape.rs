@@ -26,7 +26,7 @@
 
 mod alloc;
 
-use crate::ir::Function;
+use crate::ir::{Function, ValueId};
 use crate::ops::Op;
 
 /// Most operands that an operation has.
@@ -122,6 +122,8 @@ pub struct Tape {
     pub registers: u32,
     /// The steps in order.
     pub ops: Vec<TapeOp>,
+    /// The instruction that each step computes; beside the steps, so that these stay small.
+    pub values: Vec<ValueId>,
     /// The loops among them.
     pub loops: Vec<TapeLoop>,
 }
@@ -151,9 +153,9 @@ pub fn rounded(constant: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ir::text;
     use crate::ir::verify::random;
     use crate::ir::walk::{self, Domain};
-    use crate::ir::{ValueId, text};
     use crate::ops::{self, Context};
 
     const UNIFORMS: [f64; 4] = [0.5, -2.0, 3.25, 100.0];
@@ -279,6 +281,7 @@ mod tests {
         let tape = Tape::new(&function);
         // The dead sine and its uniform are left out.
         assert_eq!(tape.ops.len(), 5);
+        assert_eq!(tape.values, [3, 4, 2, 0, 5].map(ValueId));
         assert_eq!(tape.ops[0], TapeOp::Input { to: Register(0), index: 0 });
         assert_eq!(tape.ops[2], TapeOp::Constant { to: Register(1), value: 1.0 });
     }

@@ -15,6 +15,8 @@
 //! does; points that have stopped keep their state.
 
 pub(crate) mod batch;
+pub(crate) mod meter;
+pub(crate) mod work;
 
 use crate::isa::{Isa, kernel};
 use batch::{Bank, Context, Lanes};
@@ -71,6 +73,10 @@ pub struct Evaluator<'a> {
     curves: &'a [CurveTable],
     registers: Vec<Lanes>,
     results: Box<[Lanes; MAX_RESULTS]>,
+    /// Which points of the batch go on in the loops around the tape at hand.
+    going: [bool; LANES],
+    /// Operations in the bodies of loops, see [`work`]; only counted where someone asks.
+    loop_work: Option<u64>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -85,12 +91,8 @@ impl<'a> Evaluator<'a> {
     pub fn of_parts(tapes: &'a Tapes, uniforms: &'a [f32], curves: &'a [CurveTable]) -> Self {
         let most = tapes.tapes.iter().map(Tape::all_registers).max().unwrap_or(0);
         let registers = vec![Lanes::default(); most];
-        Self { tapes, uniforms, curves, registers, results: Box::new(array::from_fn(|_| Lanes::default())) }
-    }
-
-    /// The vector instructions that it uses.
-    pub(crate) fn isa(&self) -> Isa {
-        self.tapes.isa
+        let results = Box::new(array::from_fn(|_| Lanes::default()));
+        Self { tapes, uniforms, curves, registers, results, going: [true; LANES], loop_work: None }
     }
 
     /// Evaluates a function at as many points as the slices are long.
@@ -102,29 +104,32 @@ impl<'a> Evaluator<'a> {
     /// If slices are missing or differ in length.
     pub fn evaluate(&mut self, function: FunctionId, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
         let tape = self.tapes.tape(function);
-        let count = outputs.first().map_or(0, |output| output.len());
-        let lengths = inputs.iter().map(|input| input.len()).chain(outputs.iter().map(|output| output.len()));
-        assert!(
-            inputs.len() >= tape.inputs as usize && outputs.len() <= tape.outputs.len(),
-            "wrong number of slices"
-        );
-        assert!(lengths.into_iter().all(|length| length == count), "slices differ in length");
-        for start in (0..count).step_by(LANES) {
-            let points = start..count.min(start + LANES);
-            let frame = Registers { first: 0, above: tape.registers as usize };
-            self.run(tape, frame, inputs, &points);
-            for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
-                let values = &self.registers[register.index()].0;
-                output[points.clone()].copy_from_slice(&values[..points.len()]);
-            }
+        for points in batches(tape, inputs, outputs) {
+            self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
+            self.hand_out(tape, outputs, &points);
         }
     }
 
-    /// Walks through a tape whose registers start at `own.first`.
-    fn run(&mut self, tape: &'a Tape, own: Registers, inputs: &[&[f32]], points: &Range<usize>) {
+    /// Copies the results of a batch from their registers.
+    fn hand_out(&self, tape: &Tape, outputs: &mut [&mut [f32]], points: &Range<usize>) {
+        for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
+            let values = &self.registers[register.index()].0;
+            output[points.clone()].copy_from_slice(&values[..points.len()]);
+        }
+    }
+
+    /// Walks through some steps of a tape whose registers start at `own.first`.
+    fn run(
+        &mut self,
+        tape: &'a Tape,
+        steps: Range<usize>,
+        own: Registers,
+        inputs: &[&[f32]],
+        points: &Range<usize>,
+    ) {
         let n = points.len();
         let at = |register: Register| own.first + register.index();
-        let mut rest = &tape.ops[..];
+        let mut rest = &tape.ops[steps];
         loop {
             // As many operations of a few instructions as there are, then one that is a function of its own.
             let bank = Bank { rows: &mut self.registers, points: n };
@@ -162,15 +167,22 @@ impl<'a> Evaluator<'a> {
             let (below, inside) = self.registers.split_at_mut(first);
             inside[i].0[..n].copy_from_slice(&below[outer.first + arg.index()].0[..n]);
         }
-        let mut goes_on = [true; LANES];
+        // Points that have stopped in a loop around keep nothing of this one.
+        let around = self.going;
+        let mut goes_on = around;
+        let work = if self.loop_work.is_some() { self.known().work(body) } else { 0 };
         for _ in 0..repeated.most {
-            self.run(body, own, &[], &(0..n));
+            self.going = goes_on;
+            if let Some(sum) = &mut self.loop_work {
+                *sum += work * goes_on[..n].iter().filter(|&&goes_on| goes_on).count() as u64;
+            }
+            self.run(body, 0..body.ops.len(), own, &[], &(0..n));
             let condition = &self.registers[first + body.outputs[state].index()].0;
             for (goes_on, &holds) in goes_on.iter_mut().zip(condition) {
                 *goes_on &= holds != 0.0;
             }
             if !goes_on[..n].contains(&true) {
-                return;
+                break;
             }
             let (below, above) = self.registers.split_at_mut(next);
             for (i, merged) in above[..state].iter_mut().enumerate() {
@@ -183,7 +195,28 @@ impl<'a> Evaluator<'a> {
                 self.registers.swap(first + i, next + i);
             }
         }
+        self.going = around;
     }
+}
+
+/// The points of a call, [`LANES`] at a time.
+///
+/// # Panics
+///
+/// If slices are missing or differ in length.
+fn batches(
+    tape: &Tape,
+    inputs: &[&[f32]],
+    outputs: &[&mut [f32]],
+) -> impl Iterator<Item = Range<usize>> + use<> {
+    let count = outputs.first().map_or(0, |output| output.len());
+    let mut lengths = inputs.iter().map(|input| input.len()).chain(outputs.iter().map(|output| output.len()));
+    assert!(
+        inputs.len() >= tape.inputs as usize && outputs.len() <= tape.outputs.len(),
+        "wrong number of slices"
+    );
+    assert!(lengths.all(|length| length == count), "slices differ in length");
+    (0..count).step_by(LANES).map(move |start| start..count.min(start + LANES))
 }
 
 kernel! {
@@ -220,6 +253,13 @@ struct Registers {
     first: usize,
     /// The first that it does not use; those of its loops start here.
     above: usize,
+}
+
+impl Registers {
+    /// Those of a function.
+    fn of(tape: &Tape) -> Self {
+        Self { first: 0, above: tape.registers as usize }
+    }
 }
 
 #[cfg(test)]

@@ -31,7 +31,13 @@ impl Isa {
     /// The widest that this machine has.
     #[must_use]
     pub fn best() -> Self {
-        Self::all().pop().unwrap_or(Self::BASELINE)
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V4::try_new() {
+            return Self(Kind::Avx512(simd));
+        } else if let Some(simd) = V3::try_new() {
+            return Self(Kind::Avx2(simd));
+        }
+        Self::BASELINE
     }
 
     /// All that this machine has, the widest last.

@@ -4,6 +4,7 @@
 //! twin does, each rounded by itself; in f64 the elementary functions are those of the standard
 //! library, so the reference shares the integrator's rules but none of its approximations.
 
+use crate::isa::{Isa, kernel};
 use crate::math::fun;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -46,6 +47,8 @@ pub(crate) trait Real:
     fn log2(self) -> Self;
     /// exp(-x), x >= 0.
     fn decay(self) -> Self;
+    /// [`Real::decay`] of many numbers.
+    fn decays(x: &[Self], decays: &mut [Self]);
     /// (1 - exp(-x)) / x for x >= 0, 1 at 0: the mean transmittance over an optical depth x, of which exp(-x) is
     /// known.
     fn mean_decay(self, decay: Self) -> Self;
@@ -114,6 +117,10 @@ impl Real for f32 {
         fun::exp2(self * -std::f32::consts::LOG2_E)
     }
 
+    fn decays(x: &[Self], decays: &mut [Self]) {
+        Isa::best().run::<Decays>((x, decays));
+    }
+
     #[inline]
     fn mean_decay(self, decay: Self) -> Self {
         let x = self;
@@ -135,6 +142,14 @@ impl Real for f32 {
             0.5 - x * (1.0 / 3.0 - x * (1.0 / 8.0 - x * (1.0 / 30.0 - tail)))
         } else {
             (x.mean_decay(decay) - decay) / x
+        }
+    }
+}
+
+kernel! {
+    fn Decays<'a>((x, decays): (&'a [f32], &'a mut [f32])) {
+        for (decay, x) in decays.iter_mut().zip(x) {
+            *decay = x.decay();
         }
     }
 }
@@ -181,6 +196,10 @@ impl Real for f64 {
 
     fn decay(self) -> Self {
         (-self).exp()
+    }
+
+    fn decays(x: &[Self], decays: &mut [Self]) {
+        decays.iter_mut().zip(x).for_each(|(decay, x)| *decay = x.decay());
     }
 
     fn mean_decay(self, _: Self) -> Self {

@@ -18,6 +18,8 @@
 //! is the plain marcher of the literature, `monte_carlo` an unbiased oracle that shares nothing with the comb.
 //! Both read the media through `matter`.
 //!
+//! `cost` counts what each pixel asks of the scene, `profile` what each function and each of its parts takes.
+//!
 //! In f32 each operation is rounded by itself, in an order that neither threads nor batches change;
 //! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
 
@@ -26,6 +28,7 @@ mod cells;
 mod chord;
 mod comb;
 mod corrected;
+mod cost;
 mod fields;
 mod film;
 mod fixed_step;
@@ -40,6 +43,7 @@ mod occlusion;
 mod panel;
 mod penumbra;
 mod pilot;
+mod profile;
 mod random;
 mod sampling;
 mod scatter;
@@ -54,9 +58,12 @@ mod survey;
 mod tests;
 mod tube_axis;
 
+pub use crate::interp::meter::{FunctionCost, PartCost};
+pub use cost::{PixelCost, render_costs};
 pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids};
 pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
 pub use pilot::{StepChoice, choose_step, least_step};
+pub use profile::{Profile, profile};
 pub use spread::spread_pixels;
 
 use crate::interp::Tapes;

@@ -12,7 +12,7 @@ use crate::cli::{self, Integrator};
 const PATHS: u32 = 64;
 
 /// Error allowed of the comb where none is asked for.
-const MAX_ERROR: f32 = 1e-2;
+pub(super) const MAX_ERROR: f32 = 1e-2;
 
 /// How one picture is to be computed.
 #[derive(Debug)]
@@ -50,6 +50,10 @@ pub(super) fn check(arguments: &cli::Render) -> Result<(), Failure> {
     if !is_comb && matches!(arguments.backend, cli::Backend::Gpu) {
         let text = format!("the integrator `{}` runs on the CPU only", name(integrator));
         return Err(Failure::usage(text).with_help("leave `--backend gpu` out, or use `--integrator comb`"));
+    }
+    if arguments.aov.is_some() && matches!(arguments.backend, cli::Backend::Gpu) {
+        let failure = Failure::usage("costs are counted on the CPU only");
+        return Err(failure.with_help("leave `--backend gpu` out, or `--aov cost`"));
     }
     Ok(())
 }

@@ -31,6 +31,8 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
         cli::Backend::Gpu => Choice::Gpu,
         // The references have no twin for the GPU.
         cli::Backend::Auto if arguments.integrator != cli::Integrator::Comb => Choice::Cpu,
+        // Nor have costs.
+        cli::Backend::Auto if arguments.aov.is_some() => Choice::Cpu,
         cli::Backend::Auto => Choice::Auto,
     })?;
     let mut stats = new_stats(arguments, &prepared, &device);
@@ -72,7 +74,7 @@ fn read_reference(path: &Path, size: [u32; 2]) -> Result<output::exr::Colors, Fa
 }
 
 /// Limits all parallel work of this process.
-fn limit_threads(threads: usize) -> Result<(), Failure> {
+pub(super) fn limit_threads(threads: usize) -> Result<(), Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Failure::usage(format!("cannot start {threads} threads: {error}")))
 }
@@ -101,6 +103,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         samples_per_pixel: 0,
         adaptive: None,
         mean_samples_per_pixel: 0.0,
+        most_operations_per_pixel: None,
         counts: Counts::default(),
         milliseconds: Phases {
             check: session.check_time,
@@ -164,14 +167,19 @@ impl Pictures<'_> {
         // Compute the picture.
         let before = self.pixels * *frames;
         let progress = |done| self.progress.at(before + done);
-        let mut rendered = timed(&mut phases.render, || {
-            self.renderer.render_by(plan.method, &frame, &plan.job, &progress, &CANCELLED)
+        let mut rendered = timed(&mut phases.render, || match self.arguments.aov {
+            None => self.renderer.render_by(plan.method, &frame, &plan.job, &progress, &CANCELLED),
+            Some(cli::Aov::Cost) => {
+                self.renderer.render_costs(plan.method, &frame, &plan.job, &progress, &CANCELLED)
+            }
         })?;
         super::stop_if_cancelled()?;
         if let Some(estimate) = plan.estimate {
             rendered.image.scale_errors(estimate);
         }
-        timed(&mut phases.write, || output::write_picture(&rendered.image, path))?;
+        timed(&mut phases.write, || output::write_picture(&rendered.image, rendered.costs.as_deref(), path))?;
+        let most = rendered.costs.iter().flatten().map(|cost| cost.operations).max();
+        self.stats.most_operations_per_pixel = self.stats.most_operations_per_pixel.max(most);
         self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
         self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);
         Ok(())
@@ -206,8 +214,11 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
     };
     let error =
         stats.error.map_or_else(String::new, |error| format!(", error against the reference {error:.1e}"));
+    let cost = stats
+        .most_operations_per_pixel
+        .map_or_else(String::new, |most| format!(", at most {most} operations in a pixel"));
     super::print_line(&format!(
-        "{}: {frames}{width}x{height} in {:.2} s on {}, {estimate}{error}",
+        "{}: {frames}{width}x{height} in {:.2} s on {}, {estimate}{error}{cost}",
         arguments.output.display(),
         started.elapsed().as_secs_f64(),
         stats.device,

@@ -53,6 +53,9 @@ pub(super) struct Stats {
     pub(super) adaptive: Option<f32>,
     /// Camera rays per pixel: samples taken, and the probes of adaptive sampling.
     pub(super) mean_samples_per_pixel: f64,
+    /// Operations of the dearest pixel of all frames, in additions; only with `--aov cost`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) most_operations_per_pixel: Option<u64>,
     /// Sums over all frames.
     #[serde(flatten, serialize_with = "counts")]
     pub(super) counts: Counts,

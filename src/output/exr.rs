@@ -7,6 +7,8 @@
 //! | `Z`                        | distance of the first surface along the viewing axis, or inf   |
 //! | `Transmittance.R` `.G` `.B`| fraction of the background's light that arrives                |
 //! | `Error.Estimate`           | how far `RGB` may be off for want of samples of media          |
+//! | `Cost.Operations`          | of the scene's functions for the pixel, in additions; if asked |
+//! | `Cost.Evaluations`         | points at which functions were evaluated for it; if asked      |
 //!
 //! To put another background behind the picture, subtract `Transmittance` times the scene's own
 //! background from `RGB` and add `Transmittance` times the other.
@@ -19,32 +21,48 @@ use std::io;
 use std::path::Path;
 
 use exr::prelude::{
-    Encoding, Error, Image as ExrImage, ImageAttributes, Layer, LayerAttributes, ReadChannels as _,
-    ReadLayers as _, ReadSpecificChannel as _, SpecificChannels, Vec2, WritableImage as _, read as reader,
+    AnyChannel, AnyChannels, Encoding, Error, FlatSamples, Image as ExrImage, ImageAttributes, Layer,
+    LayerAttributes, ReadChannels as _, ReadLayers as _, ReadSpecificChannel as _, Vec2, WritableImage as _,
+    read as reader,
 };
 use vol_compiler::frame::{Image, Pixel};
+use vol_runtime_cpu::PixelCost;
 
 use super::atomic::Sink;
 use crate::compare::relative_rms;
 use crate::failure::Failure;
 
-/// Writes `picture` as an OpenEXR file of one part.
+/// Channels of a picture, and what they hold.
+const CHANNELS: [(&str, fn(&Pixel) -> f32); 9] = [
+    ("R", |pixel| pixel.color[0]),
+    ("G", |pixel| pixel.color[1]),
+    ("B", |pixel| pixel.color[2]),
+    ("A", |pixel| 1.0 - pixel.transmittance.iter().sum::<f32>() / 3.0),
+    ("Z", |pixel| pixel.depth),
+    ("Transmittance.R", |pixel| pixel.transmittance[0]),
+    ("Transmittance.G", |pixel| pixel.transmittance[1]),
+    ("Transmittance.B", |pixel| pixel.transmittance[2]),
+    ("Error.Estimate", |pixel| pixel.error),
+];
+
+/// Channels of what pixels cost.
+const COSTS: [(&str, fn(&PixelCost) -> u64); 2] =
+    [("Cost.Operations", |cost| cost.operations), ("Cost.Evaluations", |cost| cost.evaluations)];
+
+/// Writes `picture` as an OpenEXR file of one part, and what each pixel costs, if that is known.
 ///
 /// # Errors
 /// What the writer reports.
-pub fn write(picture: &Image, out: &mut dyn Sink) -> io::Result<()> {
+pub fn write(picture: &Image, costs: Option<&[PixelCost]>, out: &mut dyn Sink) -> io::Result<()> {
     let size = (picture.width as usize, picture.height as usize);
-    let channels = SpecificChannels::build()
-        .with_channel::<f32>("R")
-        .with_channel::<f32>("G")
-        .with_channel::<f32>("B")
-        .with_channel::<f32>("A")
-        .with_channel::<f32>("Z")
-        .with_channel::<f32>("Transmittance.R")
-        .with_channel::<f32>("Transmittance.G")
-        .with_channel::<f32>("Transmittance.B")
-        .with_channel::<f32>("Error.Estimate")
-        .with_pixel_fn(|Vec2(x, y)| values(&picture.pixels[y * size.0 + x]));
+    let channel = |name: &str, samples: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(samples));
+    let of_pixels =
+        |(name, value): (&str, fn(&Pixel) -> f32)| channel(name, picture.pixels.iter().map(value).collect());
+    let of_costs = |(name, value): (&str, fn(&PixelCost) -> u64)| {
+        costs.map(|costs| channel(name, costs.iter().map(|cost| value(cost) as f32).collect()))
+    };
+    let channels = CHANNELS.map(of_pixels).into_iter().chain(COSTS.into_iter().filter_map(of_costs));
+    let channels = AnyChannels::sort(channels.collect());
     let attributes = LayerAttributes { software_name: Some("vol".into()), ..LayerAttributes::default() };
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut image = ExrImage::from_layer(layer);
@@ -101,14 +119,6 @@ pub fn read(path: &Path) -> Result<Colors, Failure> {
     Ok(Colors { size: [size.0 as u32, size.1 as u32], pixels })
 }
 
-type Values = (f32, f32, f32, f32, f32, f32, f32, f32, f32);
-
-fn values(pixel: &Pixel) -> Values {
-    let [r, g, b] = pixel.color;
-    let [tr, tg, tb] = pixel.transmittance;
-    (r, g, b, 1.0 - (tr + tg + tb) / 3.0, pixel.depth, tr, tg, tb, pixel.error)
-}
-
 #[cfg(test)]
 mod tests {
     use exr::prelude::{FlatSamples, ReadChannels as _, ReadLayers as _, read};
@@ -138,7 +148,7 @@ mod tests {
         };
         let picture = Image { width: 3, height: 2, pixels: (0..6_u8).map(|i| pixel(i.into())).collect() };
         let mut file = Cursor::new(Vec::new());
-        super::write(&picture, &mut file).expect("written");
+        super::write(&picture, None, &mut file).expect("written");
         file.set_position(0);
         let image = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
         let image = image.all_attributes().non_parallel().from_buffered(file).expect("read");

@@ -2,11 +2,13 @@
 //!
 //! * [`pictures`]: what `vol render` writes
 //! * [`answers`]: what `vol check`, `compile`, `query` and `diff` say
+//! * [`costs`]: what `vol profile` and `vol render --aov cost` count
 //! * [`files`]: scenes of several files, params and chosen blocks
 //! * [`formatting`]: what `vol fmt` writes and says
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
 mod answers;
+mod costs;
 mod files;
 mod formatting;
 mod mistakes;
@@ -20,10 +22,15 @@ use tempfile::TempDir;
 
 /// The trials of this folder.
 pub(crate) fn trials() -> Vec<Trial> {
-    [pictures::trials(), answers::trials(), files::trials(), formatting::trials(), mistakes::trials()]
-        .into_iter()
-        .flatten()
-        .collect()
+    let folder = [
+        pictures::trials(),
+        answers::trials(),
+        costs::trials(),
+        files::trials(),
+        formatting::trials(),
+        mistakes::trials(),
+    ];
+    folder.into_iter().flatten().collect()
 }
 
 /// A trial named `cli::<name>`.

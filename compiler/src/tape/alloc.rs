@@ -91,6 +91,7 @@ struct Scan<'a> {
     /// Which registers are free; as long as the number of registers so far.
     free: Vec<bool>,
     ops: Vec<TapeOp>,
+    values: Vec<ValueId>,
     loops: Vec<TapeLoop>,
 }
 
@@ -99,7 +100,8 @@ impl<'a> Scan<'a> {
         let cells = Cells::new(function);
         let last_use = last_uses(function, &cells);
         let place = vec![None; cells.count];
-        Self { function, cells, last_use, place, free: Vec::new(), ops: Vec::new(), loops: Vec::new() }
+        let (free, ops, values, loops) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { function, cells, last_use, place, free, ops, values, loops }
     }
 
     fn tape(mut self) -> Tape {
@@ -110,7 +112,7 @@ impl<'a> Scan<'a> {
         }
         let outputs = self.function.outputs.iter().map(|&v| self.read(v)).collect();
         let (inputs, registers) = (self.function.inputs, self.free.len() as u32);
-        Tape { inputs, outputs, registers, ops: self.ops, loops: self.loops }
+        Tape { inputs, outputs, registers, ops: self.ops, values: self.values, loops: self.loops }
     }
 
     fn step(&mut self, i: usize, inst: &Inst) {
@@ -123,12 +125,12 @@ impl<'a> Scan<'a> {
                 let to = self.results(i);
                 let read = self.cells.of(i).enumerate().filter(|&(_, cell)| self.last_use[cell].is_some());
                 let wanted = read.fold(0, |wanted, (result, _)| wanted | 1 << result);
-                self.ops.push(TapeOp::Apply { op: *op, data: *data, to, args, wanted });
+                self.push(i, TapeOp::Apply { op: *op, data: *data, to, args, wanted });
             }
             Inst::Loop { most, body, args } => {
                 let args = self.operands(i, args);
                 let to = self.results(i);
-                self.ops.push(TapeOp::Loop { index: self.loops.len() as u32, to });
+                self.push(i, TapeOp::Loop { index: self.loops.len() as u32, to });
                 self.loops.push(TapeLoop { most: *most, args, body: allocate_body(body) });
             }
         }
@@ -163,15 +165,22 @@ impl<'a> Scan<'a> {
         }
         let to = self.take(1);
         self.place[cell] = Some(to);
-        match self.function.insts[value.index()] {
-            Inst::Constant(number) => self.ops.push(TapeOp::Constant { to, value: rounded(number.0) }),
-            Inst::Boolean(truth) => self.ops.push(TapeOp::Constant { to, value: f32::from(u8::from(truth)) }),
-            Inst::Input(index) => self.ops.push(TapeOp::Input { to, index }),
-            Inst::Uniform(index) => self.ops.push(TapeOp::Uniform { to, index }),
+        let step = match self.function.insts[value.index()] {
+            Inst::Constant(number) => TapeOp::Constant { to, value: rounded(number.0) },
+            Inst::Boolean(truth) => TapeOp::Constant { to, value: f32::from(u8::from(truth)) },
+            Inst::Input(index) => TapeOp::Input { to, index },
+            Inst::Uniform(index) => TapeOp::Uniform { to, index },
             // Operations have their place before anyone reads them: operands are earlier.
-            Inst::Apply { .. } | Inst::Loop { .. } | Inst::Extract(..) => {}
-        }
+            Inst::Apply { .. } | Inst::Loop { .. } | Inst::Extract(..) => return to,
+        };
+        self.push(value.index(), step);
         to
+    }
+
+    /// Adds the step that computes instruction `i`.
+    fn push(&mut self, i: usize, step: TapeOp) {
+        self.ops.push(step);
+        self.values.push(ValueId(i as u32));
     }
 
     /// The lowest `count` neighbouring free registers.

@@ -1,7 +1,6 @@
 //! Where the integrator gets the values of a program's functions from.
 
 use crate::interp::{Evaluator, Tapes};
-use crate::isa::kernel;
 use crate::real::{Real, Vec3};
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::FunctionId;
@@ -15,9 +14,6 @@ pub(crate) trait Fields {
 
     /// One slice per input and per output of the function, all of one length.
     fn evaluate(&mut self, function: FunctionId, inputs: &[&[Self::Real]], outputs: &mut [&mut [Self::Real]]);
-
-    /// exp(-x) of many numbers.
-    fn decays(&self, x: &[Self::Real], decays: &mut [Self::Real]);
 
     /// The first `N` outputs at many points.
     fn sample<const N: usize>(
@@ -101,18 +97,6 @@ impl Fields for Batch<'_> {
     fn evaluate(&mut self, function: FunctionId, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
         self.evaluator.evaluate(function, inputs, outputs);
     }
-
-    fn decays(&self, x: &[f32], decays: &mut [f32]) {
-        self.evaluator.isa().run::<Decays>((x, decays));
-    }
-}
-
-kernel! {
-    fn Decays<'a>((x, decays): (&'a [f32], &'a mut [f32])) {
-        for (decay, x) in decays.iter_mut().zip(x) {
-            *decay = x.decay();
-        }
-    }
 }
 
 /// The reference evaluator: f64, one point after the other.
@@ -140,9 +124,5 @@ impl Fields for Reference<'_> {
                 output[point] = value;
             }
         }
-    }
-
-    fn decays(&self, x: &[f64], decays: &mut [f64]) {
-        decays.iter_mut().zip(x).for_each(|(decay, x)| *decay = x.decay());
     }
 }

@@ -35,16 +35,16 @@ pub(crate) struct Radiance<R> {
 
 /// Part of the picture, in pixels.
 #[derive(Clone, Copy, Debug)]
-struct Tile {
-    x: u32,
-    y: u32,
+pub(super) struct Tile {
+    pub(super) x: u32,
+    pub(super) y: u32,
     width: u32,
     height: u32,
 }
 
 impl Tile {
     /// Its pixels, row by row.
-    fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
+    pub(super) fn pixels(self) -> impl Iterator<Item = [u32; 2]> {
         (0..self.height)
             .flat_map(move |row| (0..self.width).map(move |column| [self.x + column, self.y + row]))
     }
@@ -101,22 +101,40 @@ pub(crate) fn expose<F: Fields>(
     fields: &(dyn Fn() -> F + Sync),
     watch: &Watch<'_>,
 ) -> Option<(Vec<Radiance<F::Real>>, Stats)> {
-    let done = AtomicU64::new(0);
-    let render = |tile: Tile| {
-        if watch.cancelled.load(Ordering::Relaxed) {
-            return None;
-        }
+    let finished = over_tiles(job.size, watch, |tile| {
         let mut integrator = Integrator::new(scene, fields(), batches);
         let pixels: Vec<_> = tile.pixels().collect();
         let means = integrator.sample_pixels(&pixels, &job.sampling, watch.cancelled)?;
         integrator.stats.variance += means.iter().map(Mean::variance).sum::<f64>();
-        let pixels: Vec<_> = means.iter().map(Mean::radiance).collect();
-        let before = done.fetch_add(pixels.len() as u64, Ordering::Relaxed);
-        (watch.progress)(before + pixels.len() as u64);
-        Some((tile, pixels, integrator.stats))
+        Some((tile, means.iter().map(Mean::radiance).collect(), integrator.stats))
+    })?;
+    let dark = Radiance {
+        color: splat(F::Real::ZERO),
+        transmittance: splat(F::Real::ZERO),
+        depth: None,
+        doubt: F::Real::ZERO,
     };
-    let finished: Option<Vec<_>> = tiles(job.size).into_par_iter().map(render).collect();
-    Some(assemble(job.size, finished?))
+    Some(assemble(job.size, dark, finished))
+}
+
+/// What `work` makes of each tile of a picture, on many threads. Nothing if cancelled.
+pub(super) fn over_tiles<T: Send>(
+    size: [u32; 2],
+    watch: &Watch<'_>,
+    work: impl Fn(Tile) -> Option<T> + Sync,
+) -> Option<Vec<T>> {
+    let done = AtomicU64::new(0);
+    let watched = |tile: Tile| {
+        if watch.cancelled.load(Ordering::Relaxed) {
+            return None;
+        }
+        let made = work(tile)?;
+        let pixels = u64::from(tile.width) * u64::from(tile.height);
+        let before = done.fetch_add(pixels, Ordering::Relaxed);
+        (watch.progress)(before + pixels);
+        Some(made)
+    };
+    tiles(size).into_par_iter().map(watched).collect()
 }
 
 /// Cuts a picture into tiles, rows from the top.
@@ -128,12 +146,12 @@ fn tiles([width, height]: [u32; 2]) -> Vec<Tile> {
 }
 
 /// Puts the tiles in their places.
-fn assemble<R: Real>(
+pub(super) fn assemble<T: Copy>(
     [width, height]: [u32; 2],
-    tiles: Vec<(Tile, Vec<Radiance<R>>, Stats)>,
-) -> (Vec<Radiance<R>>, Stats) {
-    let dark = Radiance { color: splat(R::ZERO), transmittance: splat(R::ZERO), depth: None, doubt: R::ZERO };
-    let mut picture = vec![dark; width as usize * height as usize];
+    blank: T,
+    tiles: Vec<(Tile, Vec<T>, Stats)>,
+) -> (Vec<T>, Stats) {
+    let mut picture = vec![blank; width as usize * height as usize];
     let mut stats = Stats::default();
     for (tile, pixels, own) in tiles {
         stats.add(&own);

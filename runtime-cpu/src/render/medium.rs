@@ -162,7 +162,7 @@ impl<F: Fields> Integrator<'_, F> {
     /// Finds how much of each node's light arrives, and which nodes are behind the end of the ray.
     pub(super) fn transmit(&self, active: &[Cursor], glows: &[Glow<F::Real>], chunk: &mut Chunk<F::Real>) {
         let nodes = self.batches.nodes as usize;
-        self.fields.decays(chunk.depth.as_flattened(), chunk.decay.as_flattened_mut());
+        F::Real::decays(chunk.depth.as_flattened(), chunk.decay.as_flattened_mut());
         for (which, cursor) in active.iter().enumerate() {
             let mut transmittance = glows[cursor.ray].transmittance;
             for slot in which * nodes..(which + 1) * nodes {

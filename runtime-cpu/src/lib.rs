@@ -19,7 +19,7 @@ mod real;
 pub mod render;
 
 pub use render::{
-    Choice, GridChoice, Method, NoMajorant, Stats, StepChoice, TubeBounds, choose, choose_light_grids,
-    choose_step, fixed_step_default, least_step, reference_pixels, render, render_by, render_reference,
-    spread_pixels,
+    Choice, FilledGrids, GridChoice, Method, NoMajorant, Stats, StepChoice, TubeBounds, choose,
+    choose_light_grids, choose_step, choose_with, fixed_step_default, least_step, memory_bound,
+    reference_pixels, render, render_by, render_reference, spread_pixels,
 };

@@ -1,14 +1,18 @@
 //! The command line from outside: the built binary, its files, its words and its exit codes.
 //!
 //! * [`pictures`]: what `vol render` writes
+//! * [`animations`]: what is kept from frame to frame
 //! * [`answers`]: what `vol check`, `compile`, `query` and `diff` say
 //! * [`files`]: scenes of several files, params and chosen blocks
 //! * [`formatting`]: what `vol fmt` writes and says
+//! * [`limits`]: scenes that ask for too much, and the memory that they take
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
+mod animations;
 mod answers;
 mod files;
 mod formatting;
+mod limits;
 mod mistakes;
 mod pictures;
 
@@ -20,10 +24,18 @@ use tempfile::TempDir;
 
 /// The trials of this folder.
 pub(crate) fn trials() -> Vec<Trial> {
-    [pictures::trials(), answers::trials(), files::trials(), formatting::trials(), mistakes::trials()]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        animations::trials(),
+        pictures::trials(),
+        answers::trials(),
+        files::trials(),
+        formatting::trials(),
+        limits::trials(),
+        mistakes::trials(),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// A trial named `cli::<name>`.

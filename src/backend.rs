@@ -174,6 +174,16 @@ impl Device {
 }
 
 impl Renderer<'_> {
+    /// Whether a graphics device computes.
+    #[must_use]
+    pub fn is_on_device(&self) -> bool {
+        match &self.target {
+            Target::Cpu(_) => false,
+            #[cfg(feature = "gpu")]
+            Target::Gpu(..) => true,
+        }
+    }
+
     /// Renders one frame; `progress` hears the number of pixels done so far.
     ///
     /// # Errors

@@ -164,6 +164,9 @@ pub(crate) struct Check {
     /// as they are
     #[arg(long)]
     pub(crate) fix: bool,
+    /// Also list what is left out of the work because the scene does not need it
+    #[arg(short, long)]
+    pub(crate) verbose: bool,
     /// `human` writes to stderr, `json` to stdout
     #[arg(long, value_enum, default_value_t = MessageFormat::Human)]
     pub(crate) message_format: MessageFormat,

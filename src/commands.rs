@@ -9,6 +9,7 @@ mod compile;
 mod diff;
 mod explain;
 mod fmt;
+mod memory;
 mod method;
 mod params;
 mod profile;

@@ -5,9 +5,11 @@
 
 mod camera;
 mod extent;
+mod inputs;
 mod light_grid;
 mod tube;
 
+pub use inputs::Inputs;
 pub use light_grid::LightGrid;
 
 use crate::curve::{self, CurveTable, Quadratic};

@@ -10,6 +10,7 @@
 //! after naga has accepted the text.
 
 pub mod curve;
+pub mod dropped;
 pub mod error_bound;
 pub mod frame;
 pub mod ir;

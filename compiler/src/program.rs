@@ -47,7 +47,7 @@ pub struct Program {
     pub render: Render,
     /// Functions of a position that can be asked for by name (`vol query`, tests).
     pub fields: Vec<Field>,
-    /// What the compiler left out, one sentence each.
+    /// What the compiler left out and the author should know, one sentence each; all of it: [`crate::dropped`].
     pub report: Vec<String>,
     /// Where the instructions of each function come from, by its index.
     pub origins: Vec<Origins>,

@@ -13,6 +13,10 @@ pub enum Skip {
     CurveBoxes,
     /// A ray ends where less than 2^-16 of the light arrives.
     Opaque,
+    /// A frame that equals the one before is not rendered again.
+    SameFrames,
+    /// A light's grid that was filled for an earlier frame is not filled again.
+    SameGrids,
 }
 
 /// A name, and what is left out under it.
@@ -43,6 +47,16 @@ pub const TABLE: &[Row] = &[
         name: "opaque",
         about: "rays end where media let less than 2^-16 through; changes a pixel by at most that part of what lies behind",
     },
+    Row {
+        skip: Skip::SameFrames,
+        name: "same-frames",
+        about: "a frame of an animation that equals the one before is written again, not rendered; changes nothing",
+    },
+    Row {
+        skip: Skip::SameGrids,
+        name: "same-grids",
+        about: "grids of lights are kept from frame to frame as long as lights and media stay; changes nothing",
+    },
 ];
 
 /// A set of ways of leaving work out.
@@ -65,6 +79,12 @@ impl Skips {
     #[must_use]
     pub const fn has(self, skip: Skip) -> bool {
         self.0 & (1 << skip as u32) != 0
+    }
+
+    /// One bit for each way, by its number.
+    #[must_use]
+    pub(crate) const fn bits(self) -> u32 {
+        self.0
     }
 }
 

@@ -21,7 +21,8 @@ pub mod render;
 
 pub use isa::Isa;
 pub use render::{
-    Choice, FunctionCost, GridChoice, Method, NoMajorant, PartCost, PixelCost, Profile, Stats, StepChoice,
-    TubeBounds, choose, choose_light_grids, choose_step, fixed_step_default, least_step, profile,
-    reference_pixels, render, render_by, render_costs, render_reference, spread_pixels,
+    Choice, FilledGrids, FunctionCost, GridChoice, Method, NoMajorant, PartCost, PixelCost, Profile, Stats,
+    StepChoice, TubeBounds, choose, choose_light_grids, choose_step, choose_with, fixed_step_default,
+    least_step, memory_bound, profile, reference_pixels, render, render_by, render_costs, render_reference,
+    spread_pixels,
 };

@@ -30,6 +30,7 @@ mod comb;
 mod corrected;
 mod cost;
 mod fields;
+mod filled_grids;
 mod film;
 mod fixed_step;
 mod grid_choice;
@@ -37,6 +38,7 @@ mod light_grid;
 mod majorant;
 mod matter;
 mod medium;
+mod memory;
 mod method;
 mod monte_carlo;
 mod occlusion;
@@ -60,7 +62,9 @@ mod tube_axis;
 
 pub use crate::interp::meter::{FunctionCost, PartCost};
 pub use cost::{PixelCost, render_costs};
-pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids};
+pub use filled_grids::FilledGrids;
+pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids, choose_with};
+pub use memory::memory_bound;
 pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
 pub use pilot::{StepChoice, choose_step, least_step};
 pub use profile::{Profile, profile};
@@ -127,7 +131,8 @@ pub fn render(
     cancelled: &AtomicBool,
 ) -> Option<(Image, Stats)> {
     let watch = Watch { progress, cancelled };
-    let render = || render_batches(program, frame, job, Batches::DEFAULT, &watch);
+    let batches = Batches::for_media(frame.media.len());
+    let render = || render_batches(program, frame, job, batches, &watch);
     let pool = threads.map(|count| rayon::ThreadPoolBuilder::new().num_threads(count).build());
     match pool {
         Some(Ok(pool)) => pool.install(render),

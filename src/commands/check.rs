@@ -6,9 +6,9 @@ use std::path::Path;
 use vol::failure::Failure;
 use vol::output::atomic;
 use vol::session::{self, Session};
-use vol_compiler::lints;
 use vol_compiler::program::Program;
 use vol_compiler::skip::Skips;
+use vol_compiler::{dropped, lints};
 use vol_language::diag::{self, Diagnostic, Fix, apply_all};
 use vol_language::source::Sources;
 
@@ -19,7 +19,7 @@ pub(super) fn run(arguments: &cli::Check) -> Result<(), Failure> {
     let mut worst = 0;
     for path in &arguments.scenes {
         let repaired = if arguments.fix { repair(path) } else { Ok(()) };
-        match repaired.and_then(|()| check(path, arguments.message_format)) {
+        match repaired.and_then(|()| check(path, arguments)) {
             Ok(()) => {}
             Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
             Err(failure) => {
@@ -55,15 +55,18 @@ fn repair(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn check(path: &Path, format: MessageFormat) -> Result<(), Failure> {
+fn check(path: &Path, arguments: &cli::Check) -> Result<(), Failure> {
+    let format = arguments.message_format;
     match session::load(path, Skips::ALL).and_then(with_first_frame) {
         Ok(session) => {
             report(&session.sources, &session.warnings, format)?;
             if format == MessageFormat::Human {
                 super::print_line(&format!("{}: {}", path.display(), summary(&session.program)));
-                for note in &session.program.report {
-                    super::print_line(&format!("note: {note}"));
-                }
+                let notes = match arguments.verbose {
+                    true => dropped::dropped(&session.program),
+                    false => session.program.report.clone(),
+                };
+                notes.iter().for_each(|note| super::print_line(&format!("note: {note}")));
             }
             Ok(())
         }

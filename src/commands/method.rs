@@ -4,7 +4,7 @@ use vol::failure::Failure;
 use vol::session::{Moment, Session};
 use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
-use vol_runtime_cpu::{GridChoice, Method, TubeBounds};
+use vol_runtime_cpu::{FilledGrids, GridChoice, Method, TubeBounds};
 
 use crate::cli::{self, Integrator};
 
@@ -101,12 +101,14 @@ pub(super) fn sampling(
 }
 
 /// Chooses the method, its steps and the grids of the frame's lights; the pilot of the comb takes a while.
+/// Grids that were `filled` for other frames need not be filled again.
 pub(super) fn plan(
     arguments: &cli::Render,
     program: &Program,
     frame: &mut Frame,
     size: [u32; 2],
     sampling: Sampling,
+    filled: &mut FilledGrids,
 ) -> Plan {
     let seed = arguments.seed;
     let job = |step, shadow_step| {
@@ -117,7 +119,7 @@ pub(super) fn plan(
         Integrator::Comb => {
             let max_error = arguments.max_error.unwrap_or(MAX_ERROR);
             let scale = arguments.step_scale.unwrap_or(1.0);
-            let chosen = vol_runtime_cpu::choose(program, frame, size, sampling, max_error);
+            let chosen = vol_runtime_cpu::choose_with(program, frame, size, sampling, max_error, filled);
             // Not so short that rays would end before they are through.
             let scaled = |step: f32| (scale * step).max(vol_runtime_cpu::least_step(frame));
             let (step, shadow_step) = (scaled(chosen.job.step), scaled(chosen.job.shadow_step));

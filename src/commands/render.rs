@@ -3,12 +3,16 @@
 use std::path::Path;
 use std::time::Instant;
 
-use vol::backend::{Choice, Device, Renderer};
+use vol::backend::{Choice, Device, Rendered, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
-use vol_compiler::frame::Counts;
+use vol_compiler::dropped;
+use vol_compiler::frame::{Counts, Frame, Inputs, Sampling};
+use vol_compiler::skip::Skip;
+use vol_runtime_cpu::FilledGrids;
 
+use super::memory::{self, Memory};
 use super::method;
 use super::progress::Progress;
 use super::stats::{Phases, Stats, timed};
@@ -39,6 +43,7 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
     let reference =
         arguments.reference.as_deref().map(|path| read_reference(path, stats.size)).transpose()?;
     render(arguments, &prepared, &device, reference.as_ref(), &mut stats)?;
+    stats.memory.peak = memory::peak_resident();
     if let Some(path) = &arguments.stats {
         write_stats(&stats, path)?;
     }
@@ -88,6 +93,8 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         device: device.description(),
         size: arguments.size.map_or(session.program.render.size, |Size(size)| size),
         frames: 0,
+        same_frames: 0,
+        same_grids: 0,
         seed: arguments.seed,
         integrator: method::name(arguments.integrator),
         jitter: method::jitter(arguments),
@@ -110,6 +117,8 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
             compile: session.compile_time,
             ..Phases::default()
         },
+        memory: Memory { before: memory::peak_resident(), ..Memory::default() },
+        dropped: dropped::dropped(&session.program),
     }
 }
 
@@ -126,7 +135,9 @@ fn render(
     let pixels = stats.size.map(u64::from).iter().product();
     let renderer = timed(&mut stats.milliseconds.prepare, || device.prepare(&session.program))?;
     let progress = Progress::new(pixels * frames);
-    let mut pictures = Pictures { arguments, prepared, renderer, pixels, progress, reference, stats };
+    let filled = FilledGrids::default();
+    let mut pictures =
+        Pictures { arguments, prepared, renderer, pixels, progress, reference, filled, last: None, stats };
     let Some(FrameRange { first, last }) = arguments.frames else {
         return pictures.render(*moment, &arguments.output);
     };
@@ -147,23 +158,59 @@ struct Pictures<'a> {
     progress: Progress,
     /// What the picture is compared with.
     reference: Option<&'a output::exr::Colors>,
+    /// Grids of lights of the frames so far.
+    filled: FilledGrids,
+    /// The last picture, where another one may equal it.
+    last: Option<Last>,
     stats: &'a mut Stats,
 }
 
+/// A picture and what it was made from.
+struct Last {
+    inputs: Inputs,
+    sampling: Sampling,
+    rendered: Rendered,
+}
+
 impl Pictures<'_> {
-    /// Renders one picture and writes it.
+    /// Writes one picture: renders it, unless it is the last one again.
     fn render(&mut self, moment: Moment, path: &Path) -> Result<(), Failure> {
         super::stop_if_cancelled()?;
         let Prepared { session, params, .. } = self.prepared;
-        let Stats { size, frames, milliseconds: phases, .. } = &mut *self.stats;
-        let mut frame = session.frame(params, moment, *size)?;
+        let size = self.stats.size;
+        let frame = session.frame(params, moment, size)?;
+        let sampling = method::sampling(self.arguments, session, params, moment)?;
+        let may_repeat = self.arguments.frames.is_some() && frame.skips.has(Skip::SameFrames);
+        let inputs = may_repeat.then(|| Inputs::of_picture(&session.program, &frame));
+        let is_same = |last: &&Last| Some(&last.inputs) == inputs.as_ref() && last.sampling == sampling;
+        if let Some(last) = self.last.as_ref().filter(is_same) {
+            timed(&mut self.stats.milliseconds.write, || write(&last.rendered, path))?;
+            self.stats.add_same();
+            self.progress.at(self.pixels * self.stats.frames);
+            return Ok(());
+        }
+        let rendered = self.compute(frame, sampling)?;
+        timed(&mut self.stats.milliseconds.write, || write(&rendered, path))?;
+        self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
+        self.last = inputs.map(|inputs| Last { inputs, sampling, rendered });
+        Ok(())
+    }
+
+    /// Computes one picture.
+    fn compute(&mut self, mut frame: Frame, sampling: Sampling) -> Result<Rendered, Failure> {
+        let Stats { size, frames, milliseconds: phases, memory, .. } = &mut *self.stats;
         // Choose the distance between samples from a few rays, unless it is given, and what to look up
         // instead of marching.
-        let sampling = method::sampling(self.arguments, session, params, moment)?;
+        let program = &self.prepared.session.program;
         let plan = timed(&mut phases.pilot, || {
-            method::plan(self.arguments, &session.program, &mut frame, *size, sampling)
+            method::plan(self.arguments, program, &mut frame, *size, sampling, &mut self.filled)
         });
         super::stop_if_cancelled()?;
+        if !self.renderer.is_on_device() {
+            let threads = rayon::current_num_threads();
+            let bound = vol_runtime_cpu::memory_bound(program, &frame, &plan.job, threads, &self.filled);
+            memory.bound = memory.bound.max(Some(bound));
+        }
         // Compute the picture.
         let before = self.pixels * *frames;
         let progress = |done| self.progress.at(before + done);
@@ -177,13 +224,16 @@ impl Pictures<'_> {
         if let Some(estimate) = plan.estimate {
             rendered.image.scale_errors(estimate);
         }
-        timed(&mut phases.write, || output::write_picture(&rendered.image, rendered.costs.as_deref(), path))?;
         let most = rendered.costs.iter().flatten().map(|cost| cost.operations).max();
         self.stats.most_operations_per_pixel = self.stats.most_operations_per_pixel.max(most);
-        self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
         self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);
-        Ok(())
+        self.stats.same_grids = self.filled.reused();
+        Ok(rendered)
     }
+}
+
+fn write(rendered: &Rendered, path: &Path) -> Result<(), Failure> {
+    output::write_picture(&rendered.image, rendered.costs.as_deref(), path)
 }
 
 fn write_stats(stats: &Stats, path: &Path) -> Result<(), Failure> {
@@ -206,6 +256,10 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         1 => String::new(),
         frames => format!("{frames} frames of "),
     };
+    let same = match stats.same_frames {
+        0 => String::new(),
+        same => format!(" ({same} the same as the one before)"),
+    };
     let scaled = if stats.step_scale.is_some() { " before the step was scaled" } else { "" };
     let estimate = match (stats.estimate, arguments.integrator) {
         (Some(error), cli::Integrator::MonteCarlo) => format!("standard error {error:.1e}"),
@@ -218,7 +272,7 @@ fn print_summary(arguments: &cli::Render, stats: &Stats, started: Instant) {
         .most_operations_per_pixel
         .map_or_else(String::new, |most| format!(", at most {most} operations in a pixel"));
     super::print_line(&format!(
-        "{}: {frames}{width}x{height} in {:.2} s on {}, {estimate}{error}{cost}",
+        "{}: {frames}{width}x{height}{same} in {:.2} s on {}, {estimate}{error}{cost}",
         arguments.output.display(),
         started.elapsed().as_secs_f64(),
         stats.device,

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use vol_compiler::frame::{Counts, Quadrature};
 use vol_runtime_cpu::{GridChoice, Method};
 
+use super::memory::Memory;
 use super::method::Plan;
 
 /// The file's content; of several frames, sums and the worst.
@@ -22,6 +23,10 @@ pub(super) struct Stats {
     /// Width and height in pixels.
     pub(super) size: [u32; 2],
     pub(super) frames: u64,
+    /// Of those, frames that equal the one before and were not rendered again.
+    pub(super) same_frames: u64,
+    /// Grids of lights that were there from earlier frames, also ones that were tried and not taken.
+    pub(super) same_grids: u64,
     /// Of random paths and jitter; without those recorded only.
     pub(super) seed: u64,
     /// `comb`, `fixed-step` or `monte-carlo`.
@@ -60,6 +65,9 @@ pub(super) struct Stats {
     #[serde(flatten, serialize_with = "counts")]
     pub(super) counts: Counts,
     pub(super) milliseconds: Phases,
+    pub(super) memory: Memory,
+    /// What the compiler left out, a sentence each.
+    pub(super) dropped: Vec<String>,
 }
 
 impl Stats {
@@ -81,8 +89,15 @@ impl Stats {
         self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);
         self.frames += 1;
-        let pixels = f64::from(self.size[0]) * f64::from(self.size[1]) * self.frames as f64;
+        let rendered = (self.frames - self.same_frames) as f64;
+        let pixels = f64::from(self.size[0]) * f64::from(self.size[1]) * rendered;
         self.mean_samples_per_pixel = self.counts.camera_rays as f64 / pixels;
+    }
+
+    /// Adds a picture that is the last one again: nothing was computed for it.
+    pub(super) fn add_same(&mut self) {
+        self.frames += 1;
+        self.same_frames += 1;
     }
 }
 

@@ -1,16 +1,20 @@
 //! The command line from outside: the built binary, its files, its words and its exit codes.
 //!
 //! * [`pictures`]: what `vol render` writes
+//! * [`animations`]: what is kept from frame to frame
 //! * [`answers`]: what `vol check`, `compile`, `query` and `diff` say
 //! * [`costs`]: what `vol profile` and `vol render --aov cost` count
 //! * [`files`]: scenes of several files, params and chosen blocks
 //! * [`formatting`]: what `vol fmt` writes and says
+//! * [`limits`]: scenes that ask for too much, and the memory that they take
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
+mod animations;
 mod answers;
 mod costs;
 mod files;
 mod formatting;
+mod limits;
 mod mistakes;
 mod pictures;
 
@@ -22,15 +26,19 @@ use tempfile::TempDir;
 
 /// The trials of this folder.
 pub(crate) fn trials() -> Vec<Trial> {
-    let folder = [
+    [
+        animations::trials(),
         pictures::trials(),
         answers::trials(),
         costs::trials(),
         files::trials(),
         formatting::trials(),
+        limits::trials(),
         mistakes::trials(),
-    ];
-    folder.into_iter().flatten().collect()
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// A trial named `cli::<name>`.

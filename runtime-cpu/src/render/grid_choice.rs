@@ -8,6 +8,7 @@
 //! ten times as large as in rays, which are means over many nodes (so is that of marching).
 
 use super::fields::Batch;
+use super::filled_grids::FilledGrids;
 use super::light_grid::{self, Grid};
 use super::pilot::{MOST_BUDGET, Picture, Pilot, choose_step, cost};
 use super::scene::{Medium, Scene};
@@ -20,7 +21,7 @@ use vol_compiler::program::Program;
 const FIRST_INTERVALS: u32 = 32;
 
 /// Most words of all grids together, 96 MiB: a buffer that any device can bind holds 128 MiB.
-const MAX_WORDS: usize = 24 << 20;
+pub(super) const MAX_WORDS: usize = 24 << 20;
 
 /// Filling grids may cost this part of marching directly: looking up costs something, too.
 const PAYS: f64 = 0.5;
@@ -67,6 +68,17 @@ pub struct GridChoice {
 /// Grids that the frame holds already do not count. The result depends on the arguments alone.
 #[must_use]
 pub fn choose_light_grids(program: &Program, frame: &Frame, job: &Job, max_error: f32) -> Vec<GridChoice> {
+    choose_among(program, frame, job, max_error, &mut FilledGrids::default())
+}
+
+/// [`choose_light_grids`] with grids that were filled before.
+pub(super) fn choose_among(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    max_error: f32,
+    filled: &mut FilledGrids,
+) -> Vec<GridChoice> {
     let mut choices = vec![GridChoice::default(); frame.lights.len()];
     let shadows = frame.lights.iter().any(|light| light.shadows);
     let scene = plain_scene(frame, job);
@@ -81,6 +93,7 @@ pub fn choose_light_grids(program: &Program, frame: &Frame, job: &Job, max_error
     else {
         return choices;
     };
+    filled.begin(program, frame);
     let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
     let mut trial = Trial {
         tapes: &tapes,
@@ -93,6 +106,7 @@ pub fn choose_light_grids(program: &Program, frame: &Frame, job: &Job, max_error
         bounds,
         fine,
         scene,
+        filled,
     };
     for (index, choice) in choices.iter_mut().enumerate() {
         *choice = trial.choose(index, costs[index]);
@@ -150,6 +164,8 @@ struct Trial<'a> {
     target: f32,
     /// Words that a grid may have.
     words: usize,
+    /// Grids that need not be filled.
+    filled: &'a mut FilledGrids,
 }
 
 impl Trial<'_> {
@@ -166,12 +182,8 @@ impl Trial<'_> {
             if spent + nodes as f64 * per_node > PAYS * cost || words > self.words {
                 break;
             }
-            let Some((grid, evaluations)) =
-                light_grid::fill(layout, &self.scene, || Batch::new(self.tapes, self.frame))
-            else {
-                break;
-            };
-            let grid = Arc::new(grid);
+            let fields = || Batch::new(self.tapes, self.frame);
+            let Some((grid, evaluations)) = self.filled.fill(layout, &self.scene, fields) else { break };
             spent += evaluations as f64;
             per_node = evaluations as f64 / nodes as f64;
             channels = if grid.colored { 3 } else { 1 };
@@ -225,12 +237,25 @@ pub fn choose(
     sampling: Sampling,
     max_error: f32,
 ) -> Choice {
+    choose_with(program, frame, size, sampling, max_error, &mut FilledGrids::default())
+}
+
+/// [`choose`] for one of several frames of a program: grids that were `filled` for the others are not filled again.
+/// The result does not depend on them.
+pub fn choose_with(
+    program: &Program,
+    frame: &mut Frame,
+    size: [u32; 2],
+    sampling: Sampling,
+    max_error: f32,
+    filled: &mut FilledGrids,
+) -> Choice {
     // What grids may add is left to them.
     let shadows = frame.lights.iter().any(|light| light.shadows);
     let for_steps = if shadows { (1.0 - PART * PART).sqrt() * max_error } else { max_error };
     let steps = choose_step(program, frame, size, for_steps);
     let job = steps.job(size, sampling);
-    let grids = choose_light_grids(program, frame, &job, max_error);
+    let grids = choose_among(program, frame, &job, max_error, filled);
     frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
     let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
     let estimate = taken.fold(steps.estimate, f32::hypot);

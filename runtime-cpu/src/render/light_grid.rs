@@ -18,7 +18,7 @@ use super::scene::{Batches, Integrator, Scene};
 use crate::real::{Real, Vec3, add, dot, length, mul, scale, splat, sub, vector};
 use rayon::prelude::*;
 use std::sync::Arc;
-use vol_compiler::frame::LightGrid;
+use vol_compiler::frame::{LightGrid, Quadrature};
 
 /// A grid as the integrator reads it.
 #[derive(Debug)]
@@ -159,6 +159,17 @@ impl Column {
     }
 }
 
+/// All that a grid depends on beside the media: equal words, equal grids. None if [`fill`] gives none.
+pub(super) fn recipe(table: &LightGrid, step: f32, quadrature: Quadrature) -> Option<Vec<u32>> {
+    let column = Column::new(table, step)?;
+    let LightGrid { distant, origin, axes, lo, scale, counts, tint: _, colored: _, depths: _ } = table;
+    let numbers = [origin, &axes[0], &axes[1], &axes[2], lo, scale].into_iter().flatten();
+    let mut words: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
+    words.extend(counts);
+    words.extend([u32::from(*distant), column.nodes as u32, quadrature as u32]);
+    Some(words)
+}
+
 /// Nodes that filling a grid takes, inside media or not, with nodes at most `step` apart; none if they are
 /// too many for one ray.
 pub(super) fn nodes(table: &LightGrid, step: f32) -> Option<u64> {
@@ -176,12 +187,13 @@ pub(super) fn fill<F: Fields<Real = f32>>(
 ) -> Option<(LightGrid, u64)> {
     let column = Column::new(&table, scene.shadow_step)?;
     let rays: Vec<_> = (0..table.counts[0] * table.counts[1]).map(|index| ray(&table, index)).collect();
+    let batches = Batches::for_media(scene.media.len());
     let columns = |rays: &[Ray<f32>]| {
-        let mut integrator = Integrator::new(scene, fields(), Batches::DEFAULT);
+        let mut integrator = Integrator::new(scene, fields(), batches);
         let depths = integrator.columns(rays, column);
         (depths, integrator.stats.shadow_samples + integrator.stats.region_evaluations)
     };
-    let parts: Vec<_> = rays.par_chunks(Batches::DEFAULT.rays).map(columns).collect();
+    let parts: Vec<_> = rays.par_chunks(batches.rays).map(columns).collect();
     let spent = parts.iter().map(|part| part.1).sum();
     // Where they are: all of them in one piece would be as much memory again.
     let depths: Vec<_> = parts.into_iter().map(|part| part.0).collect();

@@ -104,7 +104,7 @@ pub fn render_by(
 ) -> Result<Option<(Image, Stats)>, NoMajorant> {
     let watch = Watch { progress, cancelled };
     let scene = Scene { way: Way::new(method, program, frame)?, ..Scene::new(frame, job) };
-    Ok(render_scene(program, frame, job, &scene, Batches::DEFAULT, &watch))
+    Ok(render_scene(program, frame, job, &scene, Batches::for_media(frame.media.len()), &watch))
 }
 
 impl<F: Fields> Integrator<'_, F> {

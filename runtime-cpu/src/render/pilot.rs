@@ -13,7 +13,7 @@
 //! taken [`SAFETY`] standard errors above what the rays say.
 //!
 //! **Work** is counted in samples, not in time: the choice must not depend on how busy the machine is. What was asked
-//! for counts, not how large the picture is. Where rounds grow dear fewer rays are taken, a beginning of those
+//! for counts, not how large the picture is; samples of long functions count more. Where rounds grow dear fewer rays are taken, a beginning of those
 //! before; and only while the errors so far say that what is left is within [`MOST_BUDGET`].
 
 use super::Stats;
@@ -29,8 +29,9 @@ use crate::interp::Tapes;
 use crate::math::fun::{exp2, log2};
 use crate::real::{Vec3, sub};
 use rayon::prelude::*;
-use vol_compiler::frame::{Aabb, Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Aabb, Frame, Job, MediumFrame, Quadrature, Sampling};
 use vol_compiler::program::Program;
+use vol_compiler::tape::Tape;
 
 /// Most rays of each stratum: of those that meet media, and of the others.
 const RAYS: [usize; 2] = [256, 128];
@@ -82,6 +83,13 @@ const HOPED_POWER: f32 = 2.0;
 /// Standard errors of the mean square that are added to it.
 const SAFETY: f64 = 2.0;
 
+/// Operations of the functions of media that make a usual sample. Where they are longer, a sample counts as several:
+/// a union of thousands of tubes must not keep the pilot busy for days.
+const USUAL_OPERATIONS: u64 = 512;
+
+/// Steps that a loop is taken to go through: most end early.
+const USUAL_STEPS: u64 = 4;
+
 /// Both quadratures.
 const FORMS: [Quadrature; 2] = [Quadrature::Midpoint, Quadrature::Corrected];
 
@@ -129,7 +137,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     let mut step = first.max(least);
     loop {
         let (counts, limit) = match rounds.last() {
-            None => (pilot.all(), FREE_BUDGET),
+            None => pilot.first_counts(),
             Some(last) => (last.next_counts(), MOST_BUDGET),
         };
         match pilot.round(step, counts, limit) {
@@ -177,6 +185,8 @@ pub(super) struct Pilot<'a> {
     portions: [f64; 2],
     /// Work of the whole picture, one sample per pixel, over that of the rays.
     pub(super) scale: f64,
+    /// How many usual samples one of this scene is worth: see [`weight`].
+    weight: u64,
 }
 
 /// What rays of each stratum see: a beginning of all.
@@ -252,7 +262,17 @@ impl<'a> Pilot<'a> {
         let [meets, passes] = [0, 1].map(|stratum| rays[stratum].len().max(1) as f64);
         let pixels = f64::from(size[0]) * f64::from(size[1]);
         let scale = pixels * portions[0].max(portions[1] / passes) / meets;
-        Self { frame, tapes, size, rays, portions, scale }
+        Self { frame, tapes, size, rays, portions, scale, weight: weight(frame, tapes) }
+    }
+
+    /// Rays of the first round, and the samples that it may take: with dear samples as few as can be judged by.
+    fn first_counts(&self) -> ([usize; 2], u64) {
+        let all = self.all();
+        if self.weight == 1 {
+            (all, FREE_BUDGET)
+        } else {
+            ([0, 1].map(|i| all[i].min(LEAST_RAYS[i])), MOST_BUDGET)
+        }
     }
 
     /// How many rays there are in each stratum.
@@ -260,7 +280,7 @@ impl<'a> Pilot<'a> {
         [self.rays[0].len(), self.rays[1].len()]
     }
 
-    /// Renders the first rays at one step; nothing if that takes more samples than `limit`.
+    /// Renders the first rays at one step; nothing if that takes more usual samples than `limit`.
     fn round(&self, step: f32, counts: [usize; 2], limit: u64) -> Option<Round> {
         let expose = |quadrature| {
             let choice = StepChoice::new(step, quadrature, 0.0);
@@ -268,22 +288,23 @@ impl<'a> Pilot<'a> {
             self.expose_scene(&scene, counts, limit)
         };
         let [midpoint, corrected] = [expose(FORMS[0])?, expose(FORMS[1])?];
-        let costs = [cost(&midpoint.1), cost(&corrected.1)];
+        let costs = [&midpoint, &corrected].map(|(_, stats)| self.weight * cost(stats));
         Some(Round { step, counts, costs, pictures: [midpoint.0, corrected.0] })
     }
 
-    /// Renders the first rays of each stratum in a scene of the frame; nothing if that takes more samples than
-    /// `limit`.
+    /// Renders the first rays of each stratum in a scene of the frame; nothing if that takes more usual samples
+    /// than `limit`.
     pub(super) fn expose_scene(
         &self,
         scene: &Scene<f32>,
         counts: [usize; 2],
         limit: u64,
     ) -> Option<(Picture, Stats)> {
-        let purse = Purse::new(limit);
+        let purse = Purse::new(limit / self.weight);
         let render = |rays: &[_]| {
             let fields = Batch::new(self.tapes, self.frame);
-            let mut integrator = Integrator::new(scene, fields, Batches::DEFAULT).paid_from(&purse);
+            let mut integrator =
+                Integrator::new(scene, fields, Batches::for_media(scene.media.len())).paid_from(&purse);
             (integrator.radiance(rays), integrator.stats)
         };
         let mut stats = Stats::default();
@@ -358,6 +379,20 @@ impl<'a> Pilot<'a> {
     }
 }
 
+/// How many usual samples one in the dearest medium is worth, at least 1.
+fn weight(frame: &Frame, tapes: &Tapes) -> u64 {
+    let operations = |medium: &MediumFrame| {
+        [medium.region, medium.interior].map(|function| operations(tapes.tape(function))).iter().sum::<u64>()
+    };
+    (frame.media.iter().map(operations).max().unwrap_or(0) / USUAL_OPERATIONS).max(1)
+}
+
+/// Operations of a tape, as many as are usually run.
+fn operations(tape: &Tape) -> u64 {
+    let loops = tape.loops.iter().map(|inner| USUAL_STEPS.min(inner.most.into()) * operations(&inner.body));
+    tape.ops.len() as u64 + loops.sum::<u64>()
+}
+
 fn squared(color: Vec3<f32>) -> f64 {
     color.map(f64::from).map(|channel| channel * channel).iter().sum()
 }
@@ -403,6 +438,7 @@ fn meets_media(scene: &Scene<f32>, ray: &Ray<f32>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use vol_compiler::ir::text::parse_function;
 
     #[test]
     fn a_power_law_is_met() {
@@ -436,6 +472,16 @@ mod tests {
     /// A round of which each form took `cost` samples.
     fn round(cost: u64) -> Round {
         Round { step: 1.0, counts: [256, 40], pictures: Default::default(), costs: [cost; 2] }
+    }
+
+    #[test]
+    fn long_functions_count_more() {
+        let text = |count: usize| {
+            let steps: String = (1..=count).map(|i| format!("%{i} = mul %{} %0\n", i - 1)).collect();
+            format!("fn f(1) {{\n%0 = input 0\n{steps}return %{count}\n}}")
+        };
+        let tape = |count| Tape::new(&parse_function(&text(count)).expect("well-formed text"));
+        assert_eq!([operations(&tape(10)), operations(&tape(5000))], [11, 5001]);
     }
 
     #[test]

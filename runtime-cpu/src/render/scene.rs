@@ -201,8 +201,18 @@ pub(crate) struct Batches {
 }
 
 impl Batches {
-    /// About 4000 points at once: enough to pay for the interpreter, small enough for the cache.
+    /// About 1000 points at once: enough to pay for the interpreter, small enough for the cache.
     pub(crate) const DEFAULT: Self = Self { rays: 64, nodes: 16 };
+
+    /// Most nodes of a batch, counted once for each medium: what all media hold at them is there at once.
+    const MOST_NODES: usize = 65_536;
+
+    /// The usual sizes, or fewer rays where there are so many media that a batch would fill the memory.
+    pub(crate) fn for_media(media: usize) -> Self {
+        let usual = Self::DEFAULT;
+        let rays = Self::MOST_NODES / (usual.nodes as usize * media.max(1));
+        Self { rays: rays.clamp(2, usual.rays), ..usual }
+    }
 }
 
 /// The integrator at work: a scene, the evaluator of its functions, and what has been counted.

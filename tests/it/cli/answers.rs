@@ -9,6 +9,7 @@ pub(super) fn trials() -> Vec<Trial> {
     let trials = vec![
         trial("help_and_version", help),
         trial("check::fine", check_fine),
+        trial("check::verbose", check_verbose),
         trial("check::human", check_human),
         trial("check::json", check_json),
         trial("check::fix", check_fix),
@@ -73,6 +74,26 @@ fn stress_faults(sandbox: &Sandbox) -> Result<(), Failed> {
     let codes = lines.iter().filter(|line| line["code"] == "E0701").count();
     let rows = lines.iter().filter(|line| line["function"].is_string()).count();
     equal((codes, rows), (1, 4))
+}
+
+/// What is left out is told where it is asked for, and in the statistics of a render.
+fn check_verbose(sandbox: &Sandbox) -> Result<(), Failed> {
+    let scene = "medium fog { region: sphere(1), scatter: 0, absorb: 1 }\nlight sun { from: (1, 1, 1), shadows: false }\n";
+    sandbox.write("dark.vol", scene)?;
+    let words = ["note: medium `fog`: nothing scatters", "note: light `sun`: casts no shadows"];
+    for run in ["check -v dark.vol", "check --verbose dark.vol"] {
+        sandbox.vol(run)?.expect(0, &words)?;
+    }
+    equal(sandbox.vol("check dark.vol")?.expect(0, &["fine"])?.stderr.contains("note"), false)?;
+    // A medium without matter is a thing to know in any case.
+    sandbox.write("empty.vol", "medium gas { region: sphere(1), scatter: 0 }\n")?;
+    sandbox.vol("check empty.vol")?.expect(0, &["note: medium `gas` neither scatters"])?;
+    sandbox.vol("render dark.vol -o a.png --backend cpu --size 8x4 --stats s.json")?.expect(0, &[])?;
+    let stats: serde_json::Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
+    let dropped = stats["dropped"].as_array().into_iter().flatten().filter_map(serde_json::Value::as_str);
+    let told = dropped
+        .filter(|sentence| words.iter().any(|word| sentence.starts_with(word.trim_start_matches("note: "))));
+    equal(told.count(), 2)
 }
 
 fn check_fine(sandbox: &Sandbox) -> Result<(), Failed> {

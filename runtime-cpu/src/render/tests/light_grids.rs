@@ -1,6 +1,8 @@
 //! Grids of optical depth against closed forms, marching and each other.
 
 use super::super::fields::Batch;
+use super::super::filled_grids::FilledGrids;
+use super::super::grid_choice::choose_among;
 use super::super::light_grid::{Grid, fill};
 use super::super::scene::Scene;
 use super::super::{Batches, choose_light_grids, render_reference};
@@ -9,6 +11,7 @@ use crate::interp::Tapes;
 use std::sync::Arc;
 use vol_compiler::frame::{Aabb, Job, LightFrame, LightGrid, Quadrature, Sampling};
 use vol_compiler::program::Lighting;
+use vol_compiler::skip::{Skip, Skips};
 
 const EXTINCTION: [f64; 3] = [0.7, 1.3, 2.1];
 
@@ -267,6 +270,40 @@ fn chosen_grids_change_a_picture_by_what_is_allowed() {
         let again = choose_light_grids(&looked_up.program, &looked_up.frame, &LARGE, max_error);
         assert!(again.iter().zip(&looked_up.frame.light_grids).all(|(a, b)| a.grid == *b));
     }
+}
+
+/// How many grids were there already for a world, whose choices must be as if there had been none.
+fn reused(world: &World, filled: &mut FilledGrids) -> u64 {
+    let before = filled.reused();
+    let fresh = choose_light_grids(&world.program, &world.frame, &LARGE, 3e-2);
+    let found = choose_among(&world.program, &world.frame, &LARGE, 3e-2, filled);
+    for (found, fresh) in found.iter().zip(&fresh) {
+        assert_eq!(found.grid, fresh.grid);
+        assert_eq!(found.error.map(f32::to_bits), fresh.error.map(f32::to_bits));
+    }
+    filled.reused() - before
+}
+
+#[test]
+fn filled_grids_are_kept_while_media_and_lights_stay() {
+    let mut filled = FilledGrids::default();
+    let mut world = crowd();
+    assert_eq!(reused(&world, &mut filled), 0, "nothing is there");
+    let all = reused(&world, &mut filled);
+    assert!(all >= 2, "{all}");
+    world.frame.camera.origin[0] += 0.25;
+    world.frame.background = [0.5; 3];
+    assert!(reused(&world, &mut filled) >= 2, "the first grid of each light does not depend on the eye");
+    world.frame.lights[0].position[1] += 0.25;
+    let others = reused(&world, &mut filled);
+    assert!(others > 0 && others < all, "{others}: one light has moved");
+    let mut moved = crowd();
+    moved.frame.media[0].bounds.hi[0] += 0.125;
+    moved.frame.media[0].cells.clear();
+    assert_eq!(reused(&moved, &mut filled), 0, "a medium has changed");
+    assert_eq!(reused(&crowd(), &mut filled), 0, "and changed back");
+    moved.frame.skips = Skips::ALL.without(Skip::SameGrids);
+    assert_eq!([reused(&moved, &mut filled), reused(&moved, &mut filled)], [0, 0], "switched off");
 }
 
 #[test]

@@ -2,6 +2,7 @@ use super::*;
 use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Quadrature, Sampling, Stride};
 use crate::ir::text;
 use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
+use crate::skip::Skips;
 use vol_language::source::Span;
 
 const NOWHERE: Slot = Slot(0);
@@ -59,6 +60,7 @@ fn program(objects: usize, media: usize) -> Program {
         fields: Vec::new(),
         report: Vec::new(),
         origins: Vec::new(),
+        skips: Skips::ALL,
     }
 }
 
@@ -106,6 +108,7 @@ fn frame(program: &Program) -> Frame {
         light_grids: Vec::new(),
         background: [13.0, 14.0, 15.0],
         bounds: whole,
+        skips: Skips::ALL,
     }
 }
 

@@ -13,6 +13,8 @@ pub enum Skip {
     CurveBoxes,
     /// A ray ends where less than 2^-16 of the light arrives.
     Opaque,
+    /// Decisions that always fall the same way are taken out of functions.
+    Ranges,
 }
 
 /// A name, and what is left out under it.
@@ -42,6 +44,11 @@ pub const TABLE: &[Row] = &[
         skip: Skip::Opaque,
         name: "opaque",
         about: "rays end where media let less than 2^-16 through; changes a pixel by at most that part of what lies behind",
+    },
+    Row {
+        skip: Skip::Ranges,
+        name: "ranges",
+        about: "extremes and branches are left out of which bounds on the numbers show one side alone; changes nothing",
     },
 ];
 

@@ -22,7 +22,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 fn bound(skip: Skip) -> f32 {
     match skip {
         Skip::Opaque => 2.0_f32.powi(-16),
-        Skip::Cells | Skip::CurveBoxes => 0.0,
+        Skip::Cells | Skip::CurveBoxes | Skip::Ranges => 0.0,
     }
 }
 

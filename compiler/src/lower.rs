@@ -12,6 +12,7 @@
 //! | `shape`, `tube` | solids: distance, local coordinates, extent |
 //! | `optics`, `cloud` | materials and phase functions |
 //! | `scene` | blocks to the plan of the program |
+//! | `ranges` | what the scene says its numbers may be |
 
 pub(crate) mod cloud;
 pub(crate) mod curve;
@@ -19,6 +20,7 @@ pub(crate) mod expr;
 mod iterate;
 mod keys;
 pub(crate) mod optics;
+mod ranges;
 mod scene;
 pub(crate) mod shape;
 pub(crate) mod tube;
@@ -28,7 +30,7 @@ use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
-use crate::skip::Skips;
+use crate::skip::{Skip, Skips};
 use std::collections::{HashMap, HashSet};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
@@ -234,6 +236,10 @@ impl<'a> Lowerer<'a> {
         let frame = self.slots.frame_function(&mut self.graph, self.frame_inputs);
         let mut module = Module { frame, functions: std::mem::take(&mut self.functions) };
         crate::passes::run(&mut module);
+        let mut report = plan.report;
+        if self.skips.has(Skip::Ranges) {
+            report.extend(ranges::narrow(self.hir, &self.param_inputs, &mut module, &mut self.origins));
+        }
         debug_assert_eq!(verify::module(&module, self.curves.len() as u32), Ok(()), "after lowering");
         let params = self.hir.params.iter().zip(&self.param_inputs);
         let params = params.map(|(param, &first_input)| crate::program::Param {
@@ -255,7 +261,7 @@ impl<'a> Lowerer<'a> {
             camera: plan.camera,
             render: plan.render,
             fields: plan.fields,
-            report: plan.report,
+            report,
             origins: std::mem::take(&mut self.origins),
             skips: self.skips,
             module,

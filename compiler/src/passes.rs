@@ -9,6 +9,7 @@
 //! | [`cse`] | `sqrt %0` twice | once |
 //! | [`dce`] | values that no output needs | gone |
 //!
+//! [`narrow`] runs after them, with what the scene says its numbers may be (`lower/ranges.rs`).
 //! [`gradient`], [`enclose`] and [`unclip`] are no simplifications but make new values; lowering calls them.
 
 pub mod cse;
@@ -16,6 +17,7 @@ pub mod dce;
 pub(crate) mod enclose;
 pub mod fold;
 pub mod gradient;
+pub mod narrow;
 pub(crate) mod unclip;
 
 use crate::ir::{Function, Inst, Module, verify};

@@ -17,6 +17,8 @@ pub enum Skip {
     SameFrames,
     /// A light's grid that was filled for an earlier frame is not filled again.
     SameGrids,
+    /// Decisions that always fall the same way are taken out of functions.
+    Ranges,
 }
 
 /// A name, and what is left out under it.
@@ -56,6 +58,11 @@ pub const TABLE: &[Row] = &[
         skip: Skip::SameGrids,
         name: "same-grids",
         about: "grids of lights are kept from frame to frame as long as lights and media stay; changes nothing",
+    },
+    Row {
+        skip: Skip::Ranges,
+        name: "ranges",
+        about: "extremes and branches are left out of which bounds on the numbers show one side alone; changes nothing",
     },
 ];
 

@@ -21,7 +21,7 @@ pub(crate) fn trials() -> Vec<Trial> {
 /// Whether it matters to a picture by itself; what is kept from frame to frame is tried in `cli/animations.rs`.
 fn in_one_picture(skip: Skip) -> bool {
     match skip {
-        Skip::Cells | Skip::CurveBoxes | Skip::Opaque => true,
+        Skip::Cells | Skip::CurveBoxes | Skip::Opaque | Skip::Ranges => true,
         Skip::SameFrames | Skip::SameGrids => false,
     }
 }
@@ -30,7 +30,7 @@ fn in_one_picture(skip: Skip) -> bool {
 fn bound(skip: Skip) -> f32 {
     match skip {
         Skip::Opaque => 2.0_f32.powi(-16),
-        Skip::Cells | Skip::CurveBoxes | Skip::SameFrames | Skip::SameGrids => 0.0,
+        Skip::Cells | Skip::CurveBoxes | Skip::SameFrames | Skip::SameGrids | Skip::Ranges => 0.0,
     }
 }
 

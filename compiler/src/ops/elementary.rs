@@ -18,11 +18,11 @@ const LEAST_EXPONENT: f64 = -126.0;
 const LARGEST_EXPONENT: f64 = 127.0;
 /// Own absolute errors of `sin` and `cos`: a fixed part and one per |argument|, which is a rounded
 /// product and a third of that more for the rounded 1 / (2 pi).
-const CIRCLE_ERROR: (f64, f64) = (1.0 / 4_194_304.0, 1.375 / 8_388_608.0);
+pub(super) const CIRCLE_ERROR: (f64, f64) = (1.0 / 4_194_304.0, 1.375 / 8_388_608.0);
 /// Own absolute error of `log2` within [1/2, 2].
-const LOG_ERROR: f64 = 1.5e-7;
+pub(super) const LOG_ERROR: f64 = 1.5e-7;
 /// Own absolute error of `acos`; 7.9e-7 was seen with roots off by 4 ulp.
-const ACOS_ERROR: f64 = 1e-6;
+pub(super) const ACOS_ERROR: f64 = 1e-6;
 
 pub(super) const SQRT: Operation = Operation {
     op: Op::Sqrt,

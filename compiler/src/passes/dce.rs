@@ -16,18 +16,7 @@ use crate::ir::{Function, Inst, ValueId};
 /// The pass.
 pub fn dce(function: &mut Function) -> bool {
     let inside = super::in_bodies(function, dce);
-    // Operands are earlier, so one walk from the end marks all that is needed.
-    let mut needed = vec![false; function.insts.len()];
-    for output in &function.outputs {
-        needed[output.index()] = true;
-    }
-    for (i, inst) in function.insts.iter().enumerate().rev() {
-        if needed[i] {
-            for operand in inst.operands() {
-                needed[operand.index()] = true;
-            }
-        }
-    }
+    let needed = needed(function);
     let mut renamed = vec![ValueId(0); function.insts.len()];
     let mut insts: Vec<Inst> = Vec::new();
     for (i, inst) in function.insts.iter().enumerate().filter(|(i, _)| needed[*i]) {
@@ -40,6 +29,29 @@ pub fn dce(function: &mut Function) -> bool {
     let changed = inside || insts.len() < function.insts.len();
     function.insts = insts;
     changed
+}
+
+/// Which instructions the pass keeps, in their order.
+pub(super) fn kept(function: &Function) -> Vec<usize> {
+    let needed = needed(function);
+    (0..needed.len()).filter(|&i| needed[i]).collect()
+}
+
+/// Whether each instruction is needed for an output.
+fn needed(function: &Function) -> Vec<bool> {
+    // Operands are earlier, so one walk from the end marks all that is needed.
+    let mut needed = vec![false; function.insts.len()];
+    for output in &function.outputs {
+        needed[output.index()] = true;
+    }
+    for (i, inst) in function.insts.iter().enumerate().rev() {
+        if needed[i] {
+            for operand in inst.operands() {
+                needed[operand.index()] = true;
+            }
+        }
+    }
+    needed
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@ use vol_compiler::curve::{Quadratic, prepare};
 use vol_compiler::error_bound;
 use vol_compiler::ir::verify::random::{self, Random, Shape};
 use vol_compiler::ir::{Function, text};
+use vol_compiler::ops::interval::Interval;
+use vol_compiler::passes::narrow;
 
 const UNIFORMS: [f32; 4] = [0.75, -1.5, 2.0, 0.1];
 
@@ -339,4 +341,36 @@ fn values_are_within_the_error_bound_of_the_reference() {
         }
     }
     assert!(decided * 2 > all, "{decided} of {all} are decided");
+}
+
+/// Ends of intervals, and numbers between: where a decision taken out too early would show.
+#[test]
+fn narrowed_functions_give_the_same_bits() {
+    let mut fewer = 0;
+    for seed in 0..300 {
+        let shape = Shape { operations: 40, tame: seed % 2 == 0, ..Shape::default() };
+        let function = random::function(seed, &shape);
+        let mut random = Random::new(seed);
+        let mut interval = || {
+            let ends =
+                [random.between(-4.0, 4.0), random.between(-4.0, 4.0)].map(|end| f64::from(end as f32));
+            Interval::new(ends[0].min(ends[1]), ends[0].max(ends[1]))
+        };
+        let intervals: Vec<Interval> = (0..shape.inputs).map(|_| interval()).collect();
+        let uniforms = UNIFORMS.map(|uniform| Interval::point(f64::from(uniform)));
+        let narrowed = narrow::within(&function, &intervals, &uniforms);
+        fewer += usize::from(narrowed.insts.len() < function.insts.len());
+        let mut point = |within: &Interval| match random.below(3) {
+            0 => within.lo as f32,
+            1 => within.hi as f32,
+            _ => random.between(within.lo, within.hi) as f32,
+        };
+        let inputs: Vec<Vec<f32>> =
+            intervals.iter().map(|within| (0..100).map(|_| point(within)).collect()).collect();
+        let printed = text::print_function(&function);
+        let [before, after] =
+            [function, narrowed].map(|function| evaluate(&module(vec![function]), &inputs, 100));
+        assert_eq!(bits(&before), bits(&after), "{printed}");
+    }
+    assert!(fewer > 200, "{fewer} became shorter");
 }

@@ -62,7 +62,7 @@ fn of_medium(program: &Program, medium: &Medium) -> Vec<String> {
             say("nothing scatters, so no light is asked for its samples");
         }
         Lighting::Unshadowed => {
-            say("its light is not weakened, so no rays are sent from its samples to lights")
+            say("its light is not weakened, so no rays are sent from its samples to lights");
         }
         Lighting::Shadowed => {}
     }

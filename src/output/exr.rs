@@ -32,8 +32,11 @@ use super::atomic::Sink;
 use crate::compare::relative_rms;
 use crate::failure::Failure;
 
+/// A name, and what is stored under it.
+type Channel<P, T> = (&'static str, fn(&P) -> T);
+
 /// Channels of a picture, and what they hold.
-const CHANNELS: [(&str, fn(&Pixel) -> f32); 9] = [
+const CHANNELS: [Channel<Pixel, f32>; 9] = [
     ("R", |pixel| pixel.color[0]),
     ("G", |pixel| pixel.color[1]),
     ("B", |pixel| pixel.color[2]),
@@ -46,7 +49,7 @@ const CHANNELS: [(&str, fn(&Pixel) -> f32); 9] = [
 ];
 
 /// Channels of what pixels cost.
-const COSTS: [(&str, fn(&PixelCost) -> u64); 2] =
+const COSTS: [Channel<PixelCost, u64>; 2] =
     [("Cost.Operations", |cost| cost.operations), ("Cost.Evaluations", |cost| cost.evaluations)];
 
 /// Writes `picture` as an OpenEXR file of one part, and what each pixel costs, if that is known.

@@ -7,6 +7,7 @@ use crate::support::ensure_page;
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
 use vol_compiler::library::library;
+use vol_compiler::skip;
 use vol_language::blocks::{BLOCK_KINDS, Key};
 use vol_language::hir::LocalField;
 use vol_language::library::{DefaultValue, Parameter, Signature};
@@ -15,6 +16,7 @@ use vol_language::standard;
 use vol_language::ty::Type;
 
 const LANGUAGE: &str = "docs/language.md";
+const PERFORMANCE: &str = "docs/performance.md";
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -25,16 +27,19 @@ pub(crate) fn trials() -> Vec<Trial> {
     ]
 }
 
-fn page() -> Result<String, Failed> {
-    Ok(std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(LANGUAGE))?)
+fn read(page: &str) -> Result<String, Failed> {
+    Ok(std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page))?)
 }
 
 fn tables_are_current() -> Result<(), Failed> {
-    ensure_page(LANGUAGE, &with_tables(&page()?)?)
+    for page in [LANGUAGE, PERFORMANCE] {
+        ensure_page(page, &with_tables(&read(page)?)?)?;
+    }
+    Ok(())
 }
 
 fn every_function_is_in_a_table() -> Result<(), Failed> {
-    let text = page()?;
+    let text = read(LANGUAGE)?;
     let all = standard::extended(&library());
     let missing: Vec<&str> = all
         .signatures
@@ -99,6 +104,12 @@ fn with_tables(text: &str) -> Result<String, Failed> {
     Ok(out)
 }
 
+/// What is left out of the work, see [`skip::TABLE`].
+fn skips() -> String {
+    let rows = skip::TABLE.iter().map(|row| format!("| `{}` | {} |\n", row.name, row.about));
+    format!("| name | what is left out, and what that changes |\n|---|---|\n{}", rows.collect::<String>())
+}
+
 fn table(name: &str) -> Option<String> {
     if let Some(kind) = BLOCK_KINDS.into_iter().find(|kind| kind.keyword() == name) {
         return Some(keys(&format!("key of `{name}`"), &kind.keys()));
@@ -119,6 +130,7 @@ fn table(name: &str) -> Option<String> {
             .map(|kind| keys(&format!("key of {}", kind.name()), &kind.keys()))
             .join("\n"),
         "local" => local(),
+        "skips" => skips(),
         _ => {
             let library = standard::extended(&library());
             let own = library.signatures.len() - standard::signatures().len();

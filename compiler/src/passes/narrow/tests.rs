@@ -110,7 +110,7 @@ fn drawn(random: &mut Random) -> (Interval, impl Fn(&mut Random) -> f32 + use<>)
 }
 
 fn shape(seed: u64) -> Shape {
-    Shape { curves: 0, operations: 40, tame: seed % 2 == 0, ..Shape::default() }
+    Shape { curves: 0, operations: 40, tame: seed.is_multiple_of(2), ..Shape::default() }
 }
 
 /// What a value may be, beside one that a device computes; walks over both at once.

@@ -74,8 +74,10 @@ impl<const WANTED: u8> Kernel for Describe<WANTED> {
         for lane in 0..n.min(LANES) {
             let values = values(&curve::describe(searches.point(lane), &piece, searches.t[lane]));
             let won = searches.piece[lane] == index;
-            for result in (0..MAX_RESULTS).filter(|result| WANTED >> result & 1 == 1) {
-                found[result][lane] = if won { values[result] } else { found[result][lane] };
+            for (result, (found, value)) in found.iter_mut().zip(values).enumerate() {
+                if WANTED >> result & 1 == 1 {
+                    found[lane] = if won { value } else { found[lane] };
+                }
             }
         }
     }

@@ -20,14 +20,21 @@ pub(crate) fn arithmetic() -> String {
     let mut body = String::from("%0 = input 0\n%1 = input 1\n%2 = input 2\n");
     let (mut a, mut b, mut next) = (2, 1, 3);
     for _ in 0..STEPS {
-        let _ = writeln!(body, "%{next} = mul %{a} %0\n%{} = add %{next} %{b}\n%{} = min %{} %1", next + 1, next + 2, next + 1);
+        let _ = writeln!(
+            body,
+            "%{next} = mul %{a} %0\n%{} = add %{next} %{b}\n%{} = min %{} %1",
+            next + 1,
+            next + 2,
+            next + 1
+        );
         (b, a) = (a, next + 2);
         next += 3;
     }
     body + &format!("return %{a}")
 }
 
-pub(crate) fn arithmetic_native(x: f32, y: f32, z: f32) -> f32 {
+#[inline(always)]
+pub(crate) fn arithmetic_native([x, y, z]: [f32; 3]) -> f32 {
     let (mut a, mut b) = (z, y);
     for _ in 0..STEPS {
         let sum = a * x + b;
@@ -72,7 +79,8 @@ pub(crate) fn balls() -> String {
     body + &format!("return %{}", union.unwrap_or(0))
 }
 
-pub(crate) fn balls_native(x: f32, y: f32, z: f32) -> f32 {
+#[inline(always)]
+pub(crate) fn balls_native([x, y, z]: [f32; 3]) -> f32 {
     let mut union = f32::MAX;
     for [cx, cy, cz, radius] in BALLS {
         let (dx, dy, dz) = (x - cx, y - cy, z - cz);

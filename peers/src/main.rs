@@ -9,6 +9,7 @@ use fidget::context::Tree;
 use fidget::jit::JitShape;
 use fidget::shape::EzShape;
 use fidget::vm::VmShape;
+use pulp::{Simd, WithSimd};
 use std::hint::black_box;
 use std::time::Instant;
 use vol_compiler::curve::{CurveTable, Quadratic, prepare};
@@ -34,6 +35,25 @@ impl<'a> Contender<'a> {
     }
 }
 
+/// Native code for the instructions that this machine has, as the evaluator's own kernels are.
+struct Native<'a, F> {
+    points: &'a Points,
+    out: &'a mut [f32],
+    field: F,
+}
+
+impl<F: Fn([f32; 3]) -> f32> WithSimd for Native<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Points { x, y, z } = self.points;
+        for (out, ((&x, &y), &z)) in self.out.iter_mut().zip(x.iter().zip(y).zip(z)) {
+            *out = (self.field)([x, y, z]);
+        }
+    }
+}
+
 /// Coordinates of all points.
 struct Points {
     x: Vec<f32>,
@@ -46,12 +66,24 @@ fn main() {
     let points = Points { x: coordinate(0.371), y: coordinate(0.113), z: coordinate(0.057) };
     println!("| field | evaluator | ns per point | over native |");
     println!("|---|---|---|---|");
-    compare("60 operations: multiply, add, min", &points, &fields::arithmetic(), fields::arithmetic_native, fields::arithmetic_tree());
-    compare("union of six balls, 65 operations", &points, &fields::balls(), fields::balls_native, fields::balls_tree());
+    compare(
+        "60 operations: multiply, add, min",
+        &points,
+        &fields::arithmetic(),
+        fields::arithmetic_native,
+        fields::arithmetic_tree(),
+    );
+    compare(
+        "union of six balls, 65 operations",
+        &points,
+        &fields::balls(),
+        fields::balls_native,
+        fields::balls_tree(),
+    );
     alone(&points);
 }
 
-fn compare(field: &str, points: &Points, body: &str, native: fn(f32, f32, f32) -> f32, tree: Tree) {
+fn compare(field: &str, points: &Points, body: &str, native: impl Fn([f32; 3]) -> f32 + Copy, tree: Tree) {
     let tapes: Vec<Tapes> = Isa::all().into_iter().map(|isa| tapes(body).for_isa(isa)).collect();
     let mut native_out = vec![0.0; POINTS];
     let (vm, jit) = (VmShape::from(tree.clone()), JitShape::from(tree));
@@ -59,16 +91,17 @@ fn compare(field: &str, points: &Points, body: &str, native: fn(f32, f32, f32) -
     let (mut vm, mut jit) = (VmShape::new_float_slice_eval(), JitShape::new_float_slice_eval());
     let Points { x, y, z } = points;
     let mut contenders = vec![Contender::new("native code", || {
-        for (out, ((&x, &y), &z)) in native_out.iter_mut().zip(x.iter().zip(y).zip(z)) {
-            *out = native(x, y, z);
-        }
+        pulp::Arch::new().dispatch(Native { points, out: &mut native_out, field: native });
         black_box(&mut native_out);
     })];
     for (tapes, isa) in tapes.iter().zip(Isa::all()) {
         contenders.push(Contender::new(format!("vol, {}", isa.name()), ours(tapes, points, &[])));
     }
-    contenders.push(Contender::new("fidget, JIT", || drop(black_box(jit.eval(&jit_tape, x, y, z).map(<[f32]>::len)))));
-    contenders.push(Contender::new("fidget, VM", || drop(black_box(vm.eval(&vm_tape, x, y, z).map(<[f32]>::len)))));
+    contenders.push(Contender::new("fidget, JIT", || {
+        drop(black_box(jit.eval(&jit_tape, x, y, z).map(<[f32]>::len)))
+    }));
+    contenders
+        .push(Contender::new("fidget, VM", || drop(black_box(vm.eval(&vm_tape, x, y, z).map(<[f32]>::len)))));
     measure(&mut contenders);
     let base = contenders[0].least;
     for contender in &contenders {
@@ -81,7 +114,11 @@ fn alone(points: &Points) {
     let arch = Quadratic { a: [-2.0, 0.0, 0.0], b: [0.0, 3.0, 1.0], c: [2.0, 0.0, 0.5] };
     let curves = [prepare(&[arch])];
     let fields = [
-        (format!("closest point, a curve of {} pieces", curves[0].pieces.len()), "%6 = closest[0] %0 %1 %2\n%7 = extract %6 5", "%7"),
+        (
+            format!("closest point, a curve of {} pieces", curves[0].pieces.len()),
+            "%6 = closest[0] %0 %1 %2\n%7 = extract %6 5",
+            "%7",
+        ),
         ("Perlin, hashed".to_owned(), "%6 = perlin[7] %0 %1 %2", "%6"),
         ("Perlin, published table".to_owned(), "%6 = perlin[0] %0 %1 %2", "%6"),
         ("fBm, 5 octaves, hashed".to_owned(), "%6 = fbm[7] %0 %1 %2 %3 %4 %5", "%6"),

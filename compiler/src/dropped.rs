@@ -173,7 +173,8 @@ mod tests {
 
     #[test]
     fn media() {
-        let glow = "medium glow { region: sphere(1), density: q => q.local.x, scatter: 0, emit: 1 }";
+        let glow =
+            "medium glow { region: sphere(1), density: q => q.local.x, scatter: 0, absorb: 1, emit: 1 }";
         assert_says(glow, &["`glow`: nothing scatters"], &["nothing glows", "same everywhere"]);
         let fog = "medium fog { region: sphere(1), density: 2, absorb: 1 }";
         assert_says(

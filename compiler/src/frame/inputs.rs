@@ -181,9 +181,10 @@ mod tests {
     const SCENE: &str = "\
 param spin: float = 1
 param unused: float = 1
+param dense: float = 1
 fn asked(p: vec3) -> float { p.x * time + unused }
 object ball { shape: sphere(1).translate((0, 0.5 * floor(time), 0)) }
-medium gas { region: tube(bezier((-1, 0, 0), (0, 1, spin), (1, 0, 0)), 0.1), density: q => 2 + q.local.x }
+medium gas { region: tube(bezier((-1, 0, 0), (0, 1, spin), (1, 0, 0)), 0.1), density: q => 2 + dense * q.local.x }
 light sun { from: (1, 1, 1), color: spin }
 camera { from: (0, 0, 5 + 0.25 * floor(0.5 * time)) }
 ";
@@ -196,7 +197,23 @@ camera { from: (0, 0, 5 + 0.25 * floor(0.5 * time)) }
     }
 
     fn frame(program: &Program, spin: f64, unused: f64, time: f64) -> Frame {
-        program.frame(&[vec![spin], vec![unused]], time, 7.0 * time, [8, 8]).expect("a frame")
+        denser(program, [spin, unused, 1.0], time)
+    }
+
+    fn denser(program: &Program, params: [f64; 3], time: f64) -> Frame {
+        let params = params.map(|param| vec![param]);
+        program.frame(&params, time, 7.0 * time, [8, 8]).expect("a frame")
+    }
+
+    /// A number that functions read and that is nowhere else in a frame.
+    #[test]
+    fn uniforms_count() {
+        let program = compile();
+        let frames = [1.0, 2.0].map(|dense| denser(&program, [1.0, 1.0, dense], 0.0));
+        let [a, b] = frames.each_ref().map(|frame| Inputs::of_picture(&program, frame));
+        assert_ne!(a, b);
+        let [a, b] = frames.each_ref().map(|frame| Inputs::of_depths(&program, frame));
+        assert_ne!(a, b);
     }
 
     #[test]

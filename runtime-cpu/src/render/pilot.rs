@@ -84,7 +84,7 @@ const HOPED_POWER: f32 = 2.0;
 const SAFETY: f64 = 2.0;
 
 /// Operations of the functions of media that make a usual sample. Where they are longer, a sample counts as several:
-/// a union of thousands of tubes must not keep the pilot busy for days.
+/// a union of thousands of tubes must end, too.
 const USUAL_OPERATIONS: u64 = 512;
 
 /// Steps that a loop is taken to go through: most end early.

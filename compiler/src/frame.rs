@@ -313,7 +313,8 @@ impl Program {
     }
 
     /// The program at one moment: params (one list of components each, in order), time in seconds,
-    /// number of the frame, and the size of the picture, which sets the aspect ratio.
+    /// number of the frame, and the size of the picture, which sets the aspect ratio. Params are to be within their
+    /// declared ranges: functions are simplified for those ([`crate::passes::narrow`]), and are wrong outside.
     ///
     /// # Errors
     /// A displacement that has no bound, a tube whose surface cannot be marched safely: a message about

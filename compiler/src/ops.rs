@@ -6,7 +6,7 @@
 //! evaluators, the gradient pass, the WGSL writer, the verifier and the tests read this table;
 //! the CPU runtime has one kernel per row.
 
-pub(crate) mod computed;
+pub mod computed;
 mod curve;
 mod elementary;
 mod error;

@@ -19,6 +19,10 @@ pub enum Skip {
     SameGrids,
     /// Decisions that always fall the same way are taken out of functions.
     Ranges,
+    /// Of solids only those are asked whose boxes a ray meets, found by a tree.
+    Objects,
+    /// In parts of space what cannot win there is left out of functions.
+    Tapes,
 }
 
 /// A name, and what is left out under it.
@@ -63,6 +67,16 @@ pub const TABLE: &[Row] = &[
         skip: Skip::Ranges,
         name: "ranges",
         about: "extremes and branches are left out of which bounds on the numbers show one side alone; changes nothing",
+    },
+    Row {
+        skip: Skip::Objects,
+        name: "objects",
+        about: "solids are found by a tree over their boxes, and others not looked at; changes nothing",
+    },
+    Row {
+        skip: Skip::Tapes,
+        name: "tapes",
+        about: "functions are shortened for small parts of space, by what cannot win there; changes nothing",
     },
 ];
 

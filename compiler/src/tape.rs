@@ -15,6 +15,7 @@
 //! |---|---|---|
 //! | [`TapeOp::Constant`] | nothing; truth values are 0 and 1 | one register |
 //! | [`TapeOp::Input`], [`TapeOp::Uniform`] | an argument, an output of the frame function | one register |
+//! | [`TapeOp::ApplyScalar`] | one register; the other operand is the same for all points | one register |
 //! | [`TapeOp::Apply`] | as many registers as the operation has operands | consecutive registers, one per result |
 //! | [`TapeOp::Loop`] | as many registers as the loop has operands | consecutive registers, one per number of the state |
 //!
@@ -28,6 +29,7 @@ mod alloc;
 
 use crate::ir::{Function, ValueId};
 use crate::ops::Op;
+use std::sync::Arc;
 
 /// Most operands that an operation has.
 pub const MAX_OPERANDS: usize = 6;
@@ -81,6 +83,19 @@ pub enum TapeOp {
         /// Which results are read, one bit each from the lowest on; others need not be computed.
         wanted: u8,
     },
+    /// An operation of two numbers, of which one is the same for all points.
+    ApplyScalar {
+        /// Which one, of those with [`takes_scalar`].
+        op: Op,
+        /// Whether the scalar is its first operand.
+        scalar_first: bool,
+        /// The scalar.
+        scalar: Scalar,
+        /// Register to write.
+        to: Register,
+        /// Register of the other operand.
+        arg: Register,
+    },
     /// A loop.
     Loop {
         /// Which of the tape's loops.
@@ -88,6 +103,21 @@ pub enum TapeOp {
         /// First register to write, one per number of the state.
         to: Register,
     },
+}
+
+/// A number that is the same for all points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scalar {
+    /// Written in the function, rounded once.
+    Number(f32),
+    /// An output of the frame function.
+    Uniform(u32),
+}
+
+/// Whether an operation may have a scalar for an operand: those of a few instructions that take two numbers.
+#[must_use]
+pub fn takes_scalar(op: Op) -> bool {
+    matches!(op, Op::Add | Op::Sub | Op::Mul | Op::Div | Op::Min | Op::Max | Op::Less | Op::LessEqual)
 }
 
 /// A loop of a tape.
@@ -100,7 +130,7 @@ pub struct TapeLoop {
     pub args: Vec<Register>,
     /// One step: the first registers hold its inputs, which it does not change; its outputs are the
     /// next state and then whether to go there.
-    pub body: Tape,
+    pub body: Arc<Tape>,
 }
 
 impl TapeLoop {
@@ -122,7 +152,8 @@ pub struct Tape {
     pub registers: u32,
     /// The steps in order.
     pub ops: Vec<TapeOp>,
-    /// The instruction that each step computes; beside the steps, so that these stay small.
+    /// The instruction that each step computes; beside the steps, so that these stay small. None of a tape that was
+    /// made of another one.
     pub values: Vec<ValueId>,
     /// The loops among them.
     pub loops: Vec<TapeLoop>,
@@ -133,6 +164,12 @@ impl Tape {
     #[must_use]
     pub fn new(function: &Function) -> Self {
         alloc::allocate(function)
+    }
+
+    /// The same where each value has a register of its own, written once, in the order of the steps.
+    #[must_use]
+    pub fn with_own_registers(function: &Function) -> Self {
+        alloc::number(function)
     }
 
     /// Number of registers with those of loops: each has its own and a copy of its state, above those
@@ -207,6 +244,15 @@ mod tests {
                     for (i, _) in row.results.iter().enumerate() {
                         registers[to.index() + i] = (wanted >> i & 1 == 1).then_some(results[i]);
                     }
+                }
+                TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
+                    let scalar = match scalar {
+                        Scalar::Number(number) => f64::from(number),
+                        Scalar::Uniform(index) => UNIFORMS[index as usize],
+                    };
+                    let args = if scalar_first { [scalar, read(&arg)] } else { [read(&arg), scalar] };
+                    let result = (ops::operation(op).meaning)(&args, Context::default())[0];
+                    registers[to.index()] = Some(result);
                 }
                 TapeOp::Loop { index, to } => {
                     let repeated = &tape.loops[index as usize];

@@ -14,12 +14,17 @@
 //! Truth values are 0 and 1 in registers like all others. A loop goes on until no point of the batch
 //! does; points that have stopped keep their state.
 
+mod bank;
 pub(crate) mod batch;
+pub(crate) mod local;
 pub(crate) mod meter;
 pub(crate) mod work;
 
-use crate::isa::{Isa, kernel};
-use batch::{Bank, Context, Lanes};
+use crate::isa::{Isa, VectorKernel};
+use bank::{Bank, Chunk, Rows};
+use batch::{Context, Lanes};
+use local::LocalTapes;
+use pulp::Simd;
 use std::array;
 use std::ops::Range;
 use vol_compiler::curve::CurveTable;
@@ -27,16 +32,19 @@ use vol_compiler::frame::Frame;
 use vol_compiler::ir::{FunctionId, Module};
 use vol_compiler::ops::MAX_RESULTS;
 use vol_compiler::program::Program;
-use vol_compiler::tape::{Register, Tape, TapeLoop, TapeOp};
+use vol_compiler::skip::Skip;
+use vol_compiler::tape::{Register, Scalar, Tape, TapeLoop, TapeOp};
 
 /// Points that go through a tape together.
 pub const LANES: usize = 128;
 
 /// The tapes of all functions of a program.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Tapes {
     tapes: Vec<Tape>,
     isa: Isa,
+    /// What they become in parts of space, in the one frame that they are for.
+    local: Option<LocalTapes>,
 }
 
 impl Tapes {
@@ -46,10 +54,19 @@ impl Tapes {
         Self::of_module(&program.module)
     }
 
+    /// Prepares a program to be evaluated in one frame, and in no other: functions are shortened where the frame's
+    /// numbers tell what cannot matter.
+    #[must_use]
+    pub fn of_frame(program: &Program, frame: &Frame) -> Self {
+        let tapes = Self::new(program);
+        let local = frame.skips.has(Skip::Tapes).then(|| LocalTapes::new(&program.module, frame, tapes.isa));
+        Self { local, ..tapes }
+    }
+
     /// Prepares a verified module.
     #[must_use]
     pub fn of_module(module: &Module) -> Self {
-        Self { tapes: module.functions.iter().map(Tape::new).collect(), isa: Isa::best() }
+        Self { tapes: module.functions.iter().map(Tape::new).collect(), isa: Isa::best(), local: None }
     }
 
     /// The same for other vector instructions; results are the same bits.
@@ -71,8 +88,9 @@ pub struct Evaluator<'a> {
     tapes: &'a Tapes,
     uniforms: &'a [f32],
     curves: &'a [CurveTable],
-    registers: Vec<Lanes>,
+    registers: Bank,
     results: Box<[Lanes; MAX_RESULTS]>,
+    groups: Groups,
     /// Which points of the batch go on in the loops around the tape at hand.
     going: [bool; LANES],
     /// Operations in the bodies of loops, see [`work`]; only counted where someone asks.
@@ -89,10 +107,10 @@ impl<'a> Evaluator<'a> {
     /// An evaluator that knows only what functions can read of a frame.
     #[must_use]
     pub fn of_parts(tapes: &'a Tapes, uniforms: &'a [f32], curves: &'a [CurveTable]) -> Self {
-        let most = tapes.tapes.iter().map(Tape::all_registers).max().unwrap_or(0);
-        let registers = vec![Lanes::default(); most];
+        let registers = Bank::default();
         let results = Box::new(array::from_fn(|_| Lanes::default()));
-        Self { tapes, uniforms, curves, registers, results, going: [true; LANES], loop_work: None }
+        let groups = Groups::default();
+        Self { tapes, uniforms, curves, registers, results, groups, going: [true; LANES], loop_work: None }
     }
 
     /// Evaluates a function at as many points as the slices are long.
@@ -104,68 +122,118 @@ impl<'a> Evaluator<'a> {
     /// If slices are missing or differ in length.
     pub fn evaluate(&mut self, function: FunctionId, inputs: &[&[f32]], outputs: &mut [&mut [f32]]) {
         let tape = self.tapes.tape(function);
+        let local = self.tapes.local.as_ref().filter(|local| local.has(function));
         for points in batches(tape, inputs, outputs) {
-            self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
-            self.hand_out(tape, outputs, &points);
+            if let Some(local) = local {
+                self.evaluate_locally(local, function, inputs, outputs, points);
+            } else {
+                self.registers.lay_out(tape.all_registers(), points.len());
+                self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
+                self.hand_out(tape, outputs, &points);
+            }
         }
+    }
+
+    /// Evaluates a function of a position for one batch: those points together that are in one cell of its octree.
+    fn evaluate_locally(
+        &mut self,
+        local: &'a LocalTapes,
+        function: FunctionId,
+        inputs: &[&[f32]],
+        outputs: &mut [&mut [f32]],
+        points: Range<usize>,
+    ) {
+        let at = |point: usize| [0, 1, 2].map(|axis| inputs[axis][point]);
+        let mut groups = std::mem::take(&mut self.groups);
+        groups.left.extend(points.clone());
+        while let Some(first) = groups.left.pop() {
+            let found = local.find(function, at(first));
+            let short = found.and_then(|found| found.tape());
+            let tape = short.as_deref().unwrap_or(self.tapes.tape(function));
+            groups.part(first, |point| found.is_some_and(|found| found.place.contains(at(point))));
+            if let Some(found) = found {
+                found.note(groups.here.len(), points.len());
+            }
+            self.registers.lay_out(tape.all_registers(), groups.here.len());
+            if groups.here.len() == points.len() {
+                self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
+                self.hand_out(tape, outputs, &points);
+                break;
+            }
+            let here = 0..groups.here.len();
+            let slices = groups.gather(inputs);
+            self.run(tape, 0..tape.ops.len(), Registers::of(tape), &slices, &here);
+            for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
+                let values = self.registers.row(register.index());
+                groups.here.iter().zip(values).for_each(|(&point, &value)| output[point] = value);
+            }
+        }
+        self.groups = groups;
     }
 
     /// Copies the results of a batch from their registers.
     fn hand_out(&self, tape: &Tape, outputs: &mut [&mut [f32]], points: &Range<usize>) {
         for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
-            let values = &self.registers[register.index()].0;
-            output[points.clone()].copy_from_slice(&values[..points.len()]);
+            output[points.clone()].copy_from_slice(self.registers.row(register.index()));
         }
     }
 
     /// Walks through some steps of a tape whose registers start at `own.first`.
     fn run(
         &mut self,
-        tape: &'a Tape,
+        tape: &Tape,
         steps: Range<usize>,
         own: Registers,
         inputs: &[&[f32]],
         points: &Range<usize>,
     ) {
-        let n = points.len();
         let at = |register: Register| own.first + register.index();
         let mut rest = &tape.ops[steps];
         loop {
             // As many operations of a few instructions as there are, then one that is a function of its own.
-            let bank = Bank { rows: &mut self.registers, points: n };
-            let done = self.tapes.isa.run::<Simple>((bank, self.uniforms, rest, own.first, inputs, points));
+            let steps = Steps { steps: rest, first: own.first, uniforms: self.uniforms, inputs, points };
+            let (isa, bank) = (self.tapes.isa, &mut self.registers);
+            let done = match bank.width() {
+                1 => isa.run_vectors::<Simple<1>>((bank.chunks(), steps)),
+                2 => isa.run_vectors::<Simple<2>>((bank.chunks(), steps)),
+                4 => isa.run_vectors::<Simple<4>>((bank.chunks(), steps)),
+                _ => isa.run_vectors::<Simple<8>>((bank.chunks(), steps)),
+            };
             let Some((step, after)) = rest[done..].split_first() else { return };
             rest = after;
             match *step {
                 TapeOp::Apply { op, data, to, args, wanted } => {
-                    let args = args.map(|register| &self.registers[at(register)].0[..n]);
+                    // Those past the operation's own mean nothing, but are registers of the tape.
+                    let args = args.map(|register| self.registers.row(at(register)));
                     let context = Context { isa: self.tapes.isa, curves: self.curves, wanted };
                     let written = batch::apply(op, data, &args, &mut self.results, context);
                     for result in (0..written).filter(|result| wanted >> result & 1 == 1) {
-                        self.registers[at(to) + result].0[..n].copy_from_slice(&self.results[result].0[..n]);
+                        let row = self.registers.row_mut(at(to) + result);
+                        row.copy_from_slice(&self.results[result].0[..row.len()]);
                     }
                 }
                 TapeOp::Loop { index, to } => {
                     let repeated = &tape.loops[index as usize];
-                    self.repeat(repeated, own, n);
-                    for i in 0..repeated.state() {
-                        self.registers.swap(at(to) + i, own.above + i);
-                    }
+                    self.repeat(repeated, own, points.len());
+                    self.registers.copy_rows(own.above, at(to), repeated.state());
                 }
-                TapeOp::Constant { .. } | TapeOp::Uniform { .. } | TapeOp::Input { .. } => {}
+                // All of these are simple.
+                TapeOp::Constant { .. }
+                | TapeOp::Uniform { .. }
+                | TapeOp::Input { .. }
+                | TapeOp::ApplyScalar { .. } => {}
             }
         }
     }
 
     /// Runs a loop for `n` points; its last state is in the first registers above those of `outer`.
-    fn repeat(&mut self, repeated: &'a TapeLoop, outer: Registers, n: usize) {
+    fn repeat(&mut self, repeated: &TapeLoop, outer: Registers, n: usize) {
         let (body, state, first) = (&repeated.body, repeated.state(), outer.above);
         // Above the registers of the body the next state is put together.
         let next = first + body.registers as usize;
         let own = Registers { first, above: next + state };
         for (i, arg) in repeated.args.iter().enumerate() {
-            let (below, inside) = self.registers.split_at_mut(first);
-            inside[i].0[..n].copy_from_slice(&below[outer.first + arg.index()].0[..n]);
+            self.registers.copy_rows(outer.first + arg.index(), first + i, 1);
         }
         // Points that have stopped in a loop around keep nothing of this one.
         let around = self.going;
@@ -177,23 +245,21 @@ impl<'a> Evaluator<'a> {
                 *sum += work * goes_on[..n].iter().filter(|&&goes_on| goes_on).count() as u64;
             }
             self.run(body, 0..body.ops.len(), own, &[], &(0..n));
-            let condition = &self.registers[first + body.outputs[state].index()].0;
+            let condition = self.registers.row(first + body.outputs[state].index());
             for (goes_on, &holds) in goes_on.iter_mut().zip(condition) {
                 *goes_on &= holds != 0.0;
             }
             if !goes_on[..n].contains(&true) {
                 break;
             }
-            let (below, above) = self.registers.split_at_mut(next);
-            for (i, merged) in above[..state].iter_mut().enumerate() {
-                let (new, old) = (&below[first + body.outputs[i].index()].0, &below[first + i].0);
-                for lane in 0..n {
-                    merged.0[lane] = if goes_on[lane] { new[lane] } else { old[lane] };
+            for (i, output) in body.outputs[..state].iter().enumerate() {
+                // The next state is put together beside the one that is still read.
+                self.registers.copy_rows(first + i, next + i, 1);
+                for lane in (0..n).filter(|&lane| goes_on[lane]) {
+                    self.registers.row_mut(next + i)[lane] = self.registers.row(first + output.index())[lane];
                 }
             }
-            for i in 0..state {
-                self.registers.swap(first + i, next + i);
-            }
+            self.registers.copy_rows(next, first, state);
         }
         self.going = around;
     }
@@ -219,30 +285,85 @@ fn batches(
     (0..count).step_by(LANES).map(move |start| start..count.min(start + LANES))
 }
 
-kernel! {
-    /// Takes steps of a few instructions; how many there were.
-    fn Simple<'a>(
-        (mut bank, uniforms, steps, first, inputs, points): (
-            Bank<'a>, &'a [f32], &'a [TapeOp], usize, &'a [&'a [f32]], &'a Range<usize>,
-        )
-    ) -> usize {
-        let at = |register: Register| first + register.index();
-        for (done, step) in steps.iter().enumerate() {
+/// Steps of a tape, and what they read beside registers.
+struct Steps<'a> {
+    steps: &'a [TapeOp],
+    /// The first of the tape's registers.
+    first: usize,
+    uniforms: &'a [f32],
+    inputs: &'a [&'a [f32]],
+    points: &'a Range<usize>,
+}
+
+/// Takes steps of a few instructions on rows of so many chunks; how many there were.
+struct Simple<const WIDTH: usize>;
+
+impl<const WIDTH: usize> VectorKernel for Simple<WIDTH> {
+    type Args<'a> = (&'a mut [Chunk], Steps<'a>);
+    type Out = usize;
+
+    #[inline(always)]
+    fn run<S: Simd>(simd: S, (chunks, all): Self::Args<'_>) -> usize {
+        let rows = Rows::<S, WIDTH>::new(simd, chunks);
+        let at = |register: Register| all.first + register.index();
+        for (done, step) in all.steps.iter().enumerate() {
             match *step {
-                TapeOp::Constant { to, value } => bank.fill(at(to), value),
-                TapeOp::Uniform { to, index } => bank.fill(at(to), uniforms[index as usize]),
+                TapeOp::Constant { to, value } => rows.fill(at(to), value),
+                TapeOp::Uniform { to, index } => rows.fill(at(to), all.uniforms[index as usize]),
                 TapeOp::Input { to, index } => {
-                    bank.rows[at(to)].0[..points.len()].copy_from_slice(&inputs[index as usize][points.clone()]);
+                    rows.load(at(to), &all.inputs[index as usize][all.points.clone()]);
                 }
                 TapeOp::Apply { op, to, args, .. } => {
-                    if !bank.apply(op, at(to), args.map(at)) {
+                    if !rows.apply(op, at(to), args.map(at)) {
                         return done;
                     }
+                }
+                TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
+                    let scalar = match scalar {
+                        Scalar::Number(number) => number,
+                        Scalar::Uniform(index) => all.uniforms[index as usize],
+                    };
+                    rows.apply_scalar(op, at(to), at(arg), scalar, scalar_first);
                 }
                 TapeOp::Loop { .. } => return done,
             }
         }
-        steps.len()
+        all.steps.len()
+    }
+}
+
+/// Points of a batch by the cell that they are in.
+#[derive(Debug, Default)]
+struct Groups {
+    /// Those that are still to be evaluated.
+    left: Vec<usize>,
+    /// Those that are evaluated together.
+    here: Vec<usize>,
+    gathered: [Vec<f32>; 3],
+}
+
+impl Groups {
+    /// Takes a point and those that belong with it out of those that are left.
+    fn part(&mut self, first: usize, belongs: impl Fn(usize) -> bool) {
+        self.here.clear();
+        self.here.push(first);
+        let here = &mut self.here;
+        self.left.retain(|&point| {
+            let is_here = belongs(point);
+            if is_here {
+                here.push(point);
+            }
+            !is_here
+        });
+    }
+
+    /// Their coordinates.
+    fn gather(&mut self, inputs: &[&[f32]]) -> [&[f32]; 3] {
+        for (gathered, input) in self.gathered.iter_mut().zip(inputs) {
+            gathered.clear();
+            gathered.extend(self.here.iter().map(|&point| input[point]));
+        }
+        self.gathered.each_ref().map(Vec::as_slice)
     }
 }
 

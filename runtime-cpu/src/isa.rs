@@ -4,9 +4,9 @@
 //! instructions in [`Isa::all`]; [`Isa::run`] calls the right one. All compute the same bits: lanes are independent and
 //! nothing is fused or reordered (test `all_instruction_sets_compute_the_same`).
 
-use pulp::NullaryFnOnce;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V4};
+use pulp::{NullaryFnOnce, Scalar128b, Simd, WithSimd};
 
 /// A set of vector instructions that this machine has.
 #[derive(Clone, Copy, Debug)]
@@ -74,6 +74,43 @@ impl Isa {
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512(simd) => simd.vectorize(Call::<K>(args)),
         }
+    }
+}
+
+impl Isa {
+    /// Calls a loop that is written for vectors of these instructions.
+    #[inline(always)]
+    pub(crate) fn run_vectors<K: VectorKernel>(self, args: K::Args<'_>) -> K::Out {
+        match self.0 {
+            Kind::Baseline => Simd::vectorize(Scalar128b, VectorCall::<K>(args)),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(simd) => Simd::vectorize(simd, VectorCall::<K>(args)),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(simd) => Simd::vectorize(simd, VectorCall::<K>(args)),
+        }
+    }
+}
+
+/// A loop that is written for vectors, where the compiler does not make them by itself.
+pub(crate) trait VectorKernel {
+    /// What it reads and writes.
+    type Args<'a>;
+    /// What it returns.
+    type Out;
+
+    /// The loop; inlined by force like [`Kernel::run`].
+    fn run<S: Simd>(simd: S, args: Self::Args<'_>) -> Self::Out;
+}
+
+/// Such a loop with its arguments, as `pulp` wants it.
+struct VectorCall<'a, K: VectorKernel>(K::Args<'a>);
+
+impl<K: VectorKernel> WithSimd for VectorCall<'_, K> {
+    type Output = K::Out;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> K::Out {
+        K::run(simd, self.0)
     }
 }
 

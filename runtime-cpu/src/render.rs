@@ -23,8 +23,8 @@
 //! In f32 each operation is rounded by itself, in an order that neither threads nor batches change;
 //! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
 
+mod box_tree;
 mod camera;
-mod cells;
 mod chord;
 mod comb;
 mod corrected;
@@ -162,7 +162,7 @@ fn render_scene(
     watch: &Watch<'_>,
 ) -> Option<(Image, Stats)> {
     let started = Instant::now();
-    let tapes = Tapes::new(program);
+    let tapes = Tapes::of_frame(program, frame);
     let (pixels, mut stats) = expose(scene, job, batches, &|| Batch::new(&tapes, frame), watch)?;
     stats.milliseconds = started.elapsed().as_secs_f64() * 1e3;
     let pixels = pixels.into_iter().map(pixel).collect();

@@ -15,13 +15,47 @@ pub(crate) fn trials() -> Vec<Trial> {
                 .push(Trial::test(format!("skips::{}::{name}", row.name), move || neutral(row.skip, &path)));
         }
     }
+    for (skip, scene) in [(Skip::Tapes, many_parts()), (Skip::Objects, many_objects())] {
+        let test = move || neutral_in(skip, &scene, [160, 90]);
+        trials.push(Trial::test(format!("skips::{}::many", skip::TABLE[skip as usize].name), test));
+    }
     trials
+}
+
+/// Boxes less balls, some blended and some with noise on them, in one solid, and a plane below: enough for an octree.
+fn many_parts() -> String {
+    let place = "(3 * fract(0.82 * i), 3 * fract(0.67 * i), 3 * fract(0.55 * i))";
+    let parts = |kind: &str, from: u32, to: u32| {
+        format!("[for i in {from}..{to}: ({kind}).rotate_y(17deg * i).translate({place})]")
+    };
+    let hollow = parts("box((0.2, 0.2, 0.2)) - sphere(0.26)", 0, 90);
+    let blended = parts("sphere(0.25)", 90, 130);
+    format!(
+        "object parts {{ shape: union(union({hollow}), union({blended}, smooth: 0.1))\n\
+         .displace(p => 0.02 * perlin(5 * p)) }}\n\
+         object ground {{ shape: plane((0, 1, 0)) }}\n\
+         light sun {{ from: (0.4, 0.8, 0.5) }}\ncamera {{ from: (4, 4, 9), at: (1.5, 1.5, 1.5), fov: 40deg }}\n"
+    )
+}
+
+/// As many solids of their own, one around the eye, in a light with a size that they darken corners in.
+fn many_objects() -> String {
+    let at = |i: u32, step: f64| 3.0 * (step * f64::from(i)).fract();
+    let ball = |i: u32| {
+        let place = format!("({:.4}, {:.4}, {:.4})", at(i, 0.82), at(i, 0.67), at(i, 0.55));
+        format!("object o{i} {{ shape: (box((0.2, 0.2, 0.2)) - sphere(0.26)).translate({place}) }}\n")
+    };
+    (0..90).map(ball).collect::<String>()
+        + "object room { shape: sphere(30) }\n\
+           light sun { from: (0.4, 0.8, 0.5), spread: 5deg, occlusion: 0.3 }\n\
+           light lamp { at: (1, 5, 2), color: 20, radius: 0.3 }\n\
+           camera { from: (4, 4, 9), at: (1.5, 1.5, 1.5), fov: 40deg }\n"
 }
 
 /// Whether it matters to a picture by itself; what is kept from frame to frame is tried in `cli/animations.rs`.
 fn in_one_picture(skip: Skip) -> bool {
     match skip {
-        Skip::Cells | Skip::CurveBoxes | Skip::Opaque | Skip::Ranges => true,
+        Skip::Cells | Skip::CurveBoxes | Skip::Opaque | Skip::Ranges | Skip::Objects | Skip::Tapes => true,
         Skip::SameFrames | Skip::SameGrids => false,
     }
 }
@@ -30,15 +64,24 @@ fn in_one_picture(skip: Skip) -> bool {
 fn bound(skip: Skip) -> f32 {
     match skip {
         Skip::Opaque => 2.0_f32.powi(-16),
-        Skip::Cells | Skip::CurveBoxes | Skip::SameFrames | Skip::SameGrids | Skip::Ranges => 0.0,
+        Skip::Cells
+        | Skip::CurveBoxes
+        | Skip::SameFrames
+        | Skip::SameGrids
+        | Skip::Ranges
+        | Skip::Objects
+        | Skip::Tapes => 0.0,
     }
 }
 
 fn neutral(skip: Skip, path: &Path) -> Result<(), Failed> {
-    let text = std::fs::read_to_string(path)?;
+    neutral_in(skip, &std::fs::read_to_string(path)?, [20, 12])
+}
+
+fn neutral_in(skip: Skip, text: &str, size: [u32; 2]) -> Result<(), Failed> {
     for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
-        let without = picture(&text, Skips::ALL.without(skip), quadrature)?;
-        let with = picture(&text, Skips::ALL, quadrature)?;
+        let without = picture(text, Skips::ALL.without(skip), quadrature, size)?;
+        let with = picture(text, Skips::ALL, quadrature, size)?;
         let colors = |image: &Image| image.pixels.iter().flat_map(|pixel| pixel.color).collect::<Vec<f32>>();
         let (without, with) = (colors(&without), colors(&with));
         let brightest = without.iter().copied().fold(0.0, f32::max);
@@ -48,9 +91,8 @@ fn neutral(skip: Skip, path: &Path) -> Result<(), Failed> {
     Ok(())
 }
 
-fn picture(text: &str, skips: Skips, quadrature: Quadrature) -> Result<Image, Failed> {
+fn picture(text: &str, skips: Skips, quadrature: Quadrature, size: [u32; 2]) -> Result<Image, Failed> {
     let program = compile_without(text, skips)?;
-    let size = [20, 12];
     let frame = frame(&program, 1.0, size)?;
     let step = vol_runtime_cpu::fixed_step_default(&frame);
     let job = Job { size, step, shadow_step: 2.0 * step, quadrature, sampling: Sampling::CENTRE };

@@ -109,6 +109,32 @@ impl Computed {
     }
 }
 
+/// Bounds of the first result of an operation as runtimes compute it from numbers within intervals; nothing if it
+/// may be anything, or no number.
+#[must_use]
+pub fn bounds_of_first_result(op: Op, data: u32, operands: &[Interval]) -> Option<Interval> {
+    let operand = |&interval: &Interval| {
+        let nan = interval.magnitude() == f64::INFINITY;
+        Computed { interval, nan, minus_zero: true }
+    };
+    let operands: Vec<Computed> = operands.iter().map(operand).collect();
+    let found = apply(value_of(op), data, false, &operands)[0];
+    (!found.nan && found.is_finite()).then_some(found.interval)
+}
+
+/// The operation that gives the first result alone.
+fn value_of(op: Op) -> Op {
+    match op {
+        Op::PerlinGradient => Op::Perlin,
+        Op::FbmGradient => Op::Fbm,
+        Op::Perlin4Gradient => Op::Perlin4,
+        Op::ValueGradient => Op::Value,
+        Op::SimplexGradient => Op::Simplex,
+        Op::WorleyGradient => Op::Worley,
+        _ => op,
+    }
+}
+
 /// What the results of an operation may be. `squared`: whether its two operands are one value.
 pub(crate) fn apply(op: Op, data: u32, squared: bool, x: &[Computed]) -> Results<Computed> {
     let intervals: Vec<Interval> = x.iter().map(|operand| operand.interval).collect();

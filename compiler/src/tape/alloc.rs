@@ -7,12 +7,19 @@
 //! operation, and of the state of a loop, lie in neighbouring registers. In the body of a loop the
 //! inputs have the first registers from beginning to end.
 
-use super::{MAX_OPERANDS, Register, Tape, TapeLoop, TapeOp, rounded};
+use super::{MAX_OPERANDS, Register, Scalar, Tape, TapeLoop, TapeOp, rounded, takes_scalar};
 use crate::ir::{Function, Inst, ValueId};
+use crate::ops::Op;
+use std::sync::Arc;
 
 /// Allocates registers for a verified function.
 pub(super) fn allocate(function: &Function) -> Tape {
     Scan::new(function).tape()
+}
+
+/// Gives each value of a verified function a register of its own; bodies of loops share theirs.
+pub(super) fn number(function: &Function) -> Tape {
+    Scan { reuses: false, ..Scan::new(function) }.tape()
 }
 
 /// The same for the body of a loop.
@@ -84,12 +91,16 @@ fn last_uses(function: &Function, cells: &Cells) -> Vec<Option<usize>> {
 
 struct Scan<'a> {
     function: &'a Function,
+    /// Whether registers are used again.
+    reuses: bool,
     cells: Cells,
     last_use: Vec<Option<usize>>,
     /// Register of each cell that has been computed.
     place: Vec<Option<Register>>,
     /// Which registers are free; as long as the number of registers so far.
     free: Vec<bool>,
+    /// No register below this one is free.
+    lowest: usize,
     ops: Vec<TapeOp>,
     values: Vec<ValueId>,
     loops: Vec<TapeLoop>,
@@ -101,7 +112,7 @@ impl<'a> Scan<'a> {
         let last_use = last_uses(function, &cells);
         let place = vec![None; cells.count];
         let (free, ops, values, loops) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { function, cells, last_use, place, free, ops, values, loops }
+        Self { function, reuses: true, cells, last_use, place, free, lowest: 0, ops, values, loops }
     }
 
     fn tape(mut self) -> Tape {
@@ -118,6 +129,12 @@ impl<'a> Scan<'a> {
     fn step(&mut self, i: usize, inst: &Inst) {
         match inst {
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => {}
+            Inst::Apply { op, args, .. } if self.scalar(*op, args).is_some() => {
+                let Some((scalar, scalar_first)) = self.scalar(*op, args) else { return };
+                let arg = self.operands(i, &args[usize::from(scalar_first)..][..1])[0];
+                let to = self.results(i);
+                self.push(i, TapeOp::ApplyScalar { op: *op, scalar_first, scalar, to, arg });
+            }
             Inst::Apply { op, data, args } => {
                 let registers = self.operands(i, args);
                 let mut args = [Register(0); MAX_OPERANDS];
@@ -131,8 +148,30 @@ impl<'a> Scan<'a> {
                 let args = self.operands(i, args);
                 let to = self.results(i);
                 self.push(i, TapeOp::Loop { index: self.loops.len() as u32, to });
-                self.loops.push(TapeLoop { most: *most, args, body: allocate_body(body) });
+                self.loops.push(TapeLoop { most: *most, args, body: Arc::new(allocate_body(body)) });
             }
+        }
+    }
+
+    /// The scalar among the operands of an operation that may have one, and whether it is the first; nothing where
+    /// both are scalars, which happens to little.
+    fn scalar(&self, op: Op, args: &[ValueId]) -> Option<(Scalar, bool)> {
+        let scalar = |arg: ValueId| match self.function.insts[arg.index()] {
+            Inst::Constant(number) => Some(Scalar::Number(rounded(number.0))),
+            Inst::Uniform(index) => Some(Scalar::Uniform(index)),
+            Inst::Boolean(_)
+            | Inst::Input(_)
+            | Inst::Apply { .. }
+            | Inst::Loop { .. }
+            | Inst::Extract(..) => None,
+        };
+        match *args {
+            [a, b] if takes_scalar(op) => match (scalar(a), scalar(b)) {
+                (Some(scalar), None) => Some((scalar, true)),
+                (None, Some(scalar)) => Some((scalar, false)),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
@@ -141,7 +180,9 @@ impl<'a> Scan<'a> {
     fn operands(&mut self, i: usize, operands: &[ValueId]) -> Vec<Register> {
         let args: Vec<Register> = operands.iter().map(|&operand| self.read(operand)).collect();
         for (arg, operand) in args.iter().zip(operands) {
-            self.free[arg.index()] |= self.last_use[self.cells.named[operand.index()]] == Some(i);
+            if self.last_use[self.cells.named[operand.index()]] == Some(i) {
+                self.give_back(*arg);
+            }
         }
         args
     }
@@ -152,7 +193,9 @@ impl<'a> Scan<'a> {
         for (result, cell) in self.cells.of(i).enumerate() {
             let register = Register(to.0 + result as u32);
             self.place[cell] = Some(register);
-            self.free[register.index()] = self.last_use[cell].is_none();
+            if self.last_use[cell].is_none() {
+                self.give_back(register);
+            }
         }
         to
     }
@@ -183,14 +226,23 @@ impl<'a> Scan<'a> {
         self.values.push(ValueId(i as u32));
     }
 
+    /// Says that a register is free.
+    fn give_back(&mut self, register: Register) {
+        self.free[register.index()] = true;
+        self.lowest = self.lowest.min(register.index());
+    }
+
     /// The lowest `count` neighbouring free registers.
     fn take(&mut self, count: usize) -> Register {
-        let mut start = 0;
+        let mut start = if self.reuses { self.lowest } else { self.free.len() };
         while let Some(used) = (start..self.free.len().min(start + count)).rfind(|&r| !self.free[r]) {
             start = used + 1;
         }
         self.free.resize(self.free.len().max(start + count), true);
         self.free[start..start + count].fill(false);
+        if count == 1 || start == self.lowest {
+            self.lowest = start + count;
+        }
         Register(start as u32)
     }
 }

@@ -10,12 +10,11 @@ mod noise;
 use super::LANES;
 use crate::isa::{Isa, kernel};
 use crate::math::fun;
-use std::array;
 use vol_compiler::curve::{CurveTable, Node, Piece};
 use vol_compiler::ops::{MAX_RESULTS, Op};
 use vol_compiler::tape::MAX_OPERANDS;
 
-/// One value for each point of a batch; aligned to a cache line.
+/// One result for each point of a batch; aligned to a cache line.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Lanes(pub(crate) [f32; LANES]);
@@ -23,92 +22,6 @@ pub(crate) struct Lanes(pub(crate) [f32; LANES]);
 impl Default for Lanes {
     fn default() -> Self {
         Self([0.0; LANES])
-    }
-}
-
-/// Numbers that one step of a simple loop takes: as many as the widest vectors hold.
-const CHUNK: usize = 16;
-
-impl Lanes {
-    fn chunks(&self) -> &[[f32; CHUNK]] {
-        self.0.as_chunks().0
-    }
-
-    fn chunks_mut(&mut self) -> &mut [[f32; CHUNK]] {
-        self.0.as_chunks_mut().0
-    }
-}
-
-/// The registers of a tape and the part of each that is in use.
-pub(crate) struct Bank<'a> {
-    /// One row each.
-    pub(crate) rows: &'a mut [Lanes],
-    /// Points; whole chunks of them are computed.
-    pub(crate) points: usize,
-}
-
-impl Bank<'_> {
-    fn steps(&self) -> usize {
-        self.points.div_ceil(CHUNK).min(LANES / CHUNK)
-    }
-
-    /// Sets a register to one number.
-    #[inline(always)]
-    pub(crate) fn fill(&mut self, to: usize, value: f32) {
-        let steps = self.steps();
-        self.rows[to].chunks_mut()[..steps].fill([value; CHUNK]);
-    }
-
-    #[inline(always)]
-    fn one(&mut self, to: usize, [a]: [usize; 1], f: impl Fn(f32) -> f32) {
-        for step in 0..self.steps() {
-            let a = self.rows[a].chunks()[step];
-            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane]));
-        }
-    }
-
-    #[inline(always)]
-    fn two(&mut self, to: usize, [a, b]: [usize; 2], f: impl Fn(f32, f32) -> f32) {
-        for step in 0..self.steps() {
-            let [a, b] = [a, b].map(|row| self.rows[row].chunks()[step]);
-            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane], b[lane]));
-        }
-    }
-
-    #[inline(always)]
-    fn three(&mut self, to: usize, [a, b, c]: [usize; 3], f: impl Fn(f32, f32, f32) -> f32) {
-        for step in 0..self.steps() {
-            let [a, b, c] = [a, b, c].map(|row| self.rows[row].chunks()[step]);
-            self.rows[to].chunks_mut()[step] = array::from_fn(|lane| f(a[lane], b[lane], c[lane]));
-        }
-    }
-
-    /// Applies an operation of a few instructions; whether it is one.
-    #[inline(always)]
-    pub(crate) fn apply(&mut self, op: Op, to: usize, args: [usize; MAX_OPERANDS]) -> bool {
-        let [a, b, c, ..] = args;
-        match op {
-            Op::Add => self.two(to, [a, b], |a, b| a + b),
-            Op::Sub => self.two(to, [a, b], |a, b| a - b),
-            Op::Mul => self.two(to, [a, b], |a, b| a * b),
-            Op::Div => self.two(to, [a, b], |a, b| a / b),
-            Op::Min => self.two(to, [a, b], fun::lesser),
-            Op::Max => self.two(to, [a, b], fun::greater),
-            Op::Neg => self.one(to, [a], |a| -a),
-            Op::Abs => self.one(to, [a], f32::abs),
-            Op::Floor => self.one(to, [a], fun::floor),
-            Op::Sqrt => self.one(to, [a], |a| fun::greater(a, 0.0).sqrt()),
-            Op::Less => self.two(to, [a, b], |a, b| truth(a < b)),
-            Op::LessEqual => self.two(to, [a, b], |a, b| truth(a <= b)),
-            Op::Equal => self.two(to, [a, b], |a, b| truth(a == b)),
-            // On the bits of 0 and 1.
-            Op::And => self.two(to, [a, b], |a, b| f32::from_bits(a.to_bits() & b.to_bits())),
-            Op::Or => self.two(to, [a, b], |a, b| f32::from_bits(a.to_bits() | b.to_bits())),
-            Op::Not => self.one(to, [a], |a| f32::from_bits(a.to_bits() ^ 1.0_f32.to_bits())),
-            Op::Select => self.three(to, [a, b, c], |condition, a, b| if condition != 0.0 { a } else { b }),
-            _ => return false,
-        }
-        true
     }
 }
 
@@ -163,11 +76,6 @@ pub(crate) fn apply(
 
 fn curve_parts(curves: &[CurveTable], data: u32) -> (&[Piece], &[Node]) {
     curves.get(data as usize).map_or((&[], &[]), |table| (&table.pieces, &table.nodes))
-}
-
-#[inline(always)]
-fn truth(holds: bool) -> f32 {
-    if holds { 1.0 } else { 0.0 }
 }
 
 /// Functions of one number in each lane.

@@ -54,7 +54,8 @@ impl Stretches {
 fn cut(tape: &Tape, known: Known<'_>, labels: &[u32]) -> Vec<Stretch> {
     let mut stretches: Vec<Stretch> = Vec::new();
     for (step, (op, value)) in tape.ops.iter().zip(&tape.values).enumerate() {
-        let computes = matches!(op, TapeOp::Apply { .. } | TapeOp::Loop { .. });
+        let loads = matches!(op, TapeOp::Constant { .. } | TapeOp::Input { .. } | TapeOp::Uniform { .. });
+        let computes = !loads;
         let (label, work) = (labels[value.index()], known.work_of_step(tape, step));
         let start = stretches.last().map_or(0, |last| last.steps.end);
         let is_last = step + 1 == tape.ops.len();
@@ -228,6 +229,7 @@ impl Evaluator<'_> {
             meter.batches += 1;
             let mut last = meter.batches.is_multiple_of(PERIOD).then(Instant::now);
             readings += u64::from(last.is_some());
+            self.registers.lay_out(tape.all_registers(), points.len());
             for (stretch, spent) in cut.iter().zip(&mut account.stretches) {
                 self.loop_work = Some(0);
                 self.run(tape, stretch.steps.clone(), Registers::of(tape), inputs, &points);

@@ -46,7 +46,13 @@ impl<'a> Known<'a> {
 
     /// Operations of one step of a tape, in additions; of a loop none.
     pub(crate) fn work_of_step(&self, tape: &Tape, step: usize) -> u64 {
-        let TapeOp::Apply { op, data, args, .. } = &tape.ops[step] else { return 0 };
+        let (op, data, args) = match &tape.ops[step] {
+            TapeOp::Apply { op, data, args, .. } => (op, data, args),
+            TapeOp::ApplyScalar { op, .. } => return weight(*op),
+            TapeOp::Constant { .. } | TapeOp::Input { .. } | TapeOp::Uniform { .. } | TapeOp::Loop { .. } => {
+                return 0;
+            }
+        };
         let times = if matches!(op, Op::Fbm | Op::FbmGradient) {
             self.octaves(tape, step, args[3])
         } else if op.reads_curve() {
@@ -66,7 +72,7 @@ impl<'a> Known<'a> {
             TapeOp::Uniform { to, index } => {
                 (to == register).then(|| self.uniforms.get(index as usize).copied())
             }
-            TapeOp::Input { to, .. } => (to == register).then_some(None),
+            TapeOp::Input { to, .. } | TapeOp::ApplyScalar { to, .. } => (to == register).then_some(None),
             TapeOp::Apply { op, to, .. } => writes(to, operation(op).results.len()).then_some(None),
             TapeOp::Loop { index, to } => writes(to, tape.loops[index as usize].state()).then_some(None),
         };

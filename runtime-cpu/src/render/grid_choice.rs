@@ -85,7 +85,7 @@ pub(super) fn choose_among(
     let Some(bounds) = around(&scene.media).filter(|_| shadows) else {
         return choices;
     };
-    let tapes = Tapes::new(program);
+    let tapes = Tapes::of_frame(program, frame);
     let pilot = Pilot::new(frame, &tapes, job.size);
     let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
     let Some(((wanted, _), costs)) =

@@ -6,10 +6,11 @@
 
 use super::filled_grids::FilledGrids;
 use super::scene::Batches;
-use crate::interp::{LANES, Tapes};
+use crate::interp::{LANES, Tapes, local};
 use vol_compiler::frame::{Frame, Job};
 use vol_compiler::ir::{Function, FunctionId, Inst};
 use vol_compiler::program::Program;
+use vol_compiler::skip::Skip;
 
 /// Of a pixel: what its rays bring back, twice while tiles are put together; the picture, and that of the frame
 /// before; the channels of a file before and after they are packed.
@@ -74,8 +75,9 @@ pub fn memory_bound(
         + batches.rays * PER_RAY_AND_SOLID * frame.objects.len()
         + TILE
         + THREAD;
+    let local = if frame.skips.has(Skip::Tapes) { local::most_bytes(module, frame, threads) } else { 0 };
     let picture = PER_PIXEL as u64 * u64::from(job.size[0]) * u64::from(job.size[1]);
-    picture + (BASE + scene + threads * thread + filled.most_bytes()) as u64
+    picture + (BASE + scene + local + threads * thread + filled.most_bytes()) as u64
 }
 
 /// Instructions of a function, those of its loops included.

@@ -18,7 +18,7 @@ use super::camera::contains;
 use super::fields::{Fields, Points};
 use super::scene::Integrator;
 use super::surface::Contact;
-use crate::real::{Real, add, scale};
+use crate::real::{Real, Vec3, add, scale};
 
 /// Weights of the heights from the lowest, times 31: each counts half as much as the one below.
 const WEIGHTS: [f32; 5] = [16.0, 8.0, 4.0, 2.0, 1.0];
@@ -45,18 +45,16 @@ impl<F: Fields> Integrator<'_, F> {
     fn distances_above(&mut self, contacts: &[&Contact<F::Real>], height: F::Real) -> Vec<F::Real> {
         let mut distances = vec![height; contacts.len()];
         let scene = self.scene;
-        for (index, solid) in scene.solids.iter().enumerate() {
-            // A solid whose box is farther than the height hides nothing.
-            let (lo, hi) = (solid.lo.map(|x| x - height), solid.hi.map(|x| x + height));
-            let mut here = Vec::new();
-            let mut points = Points::new();
-            for (which, contact) in contacts.iter().enumerate() {
-                let point = add(contact.position, scale(contact.normal, height));
-                if contains(lo, hi, point) {
-                    here.push(which);
-                    points.push(point);
-                }
-            }
+        let above: Vec<_> =
+            contacts.iter().map(|contact| add(contact.position, scale(contact.normal, height))).collect();
+        // A solid whose box is farther than the height hides nothing.
+        let is_near = |point: usize, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
+            contains(lo.map(|x| x - height), hi.map(|x| x + height), above[point])
+        };
+        for index in scene.solids_where(above.len(), is_near) {
+            let solid = &scene.solids[index];
+            let here: Vec<usize> = (0..above.len()).filter(|&i| is_near(i, solid.lo, solid.hi)).collect();
+            let points: Points<_> = here.iter().map(|&i| above[i]).collect();
             let [found] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
             for (which, distance) in here.into_iter().zip(found) {

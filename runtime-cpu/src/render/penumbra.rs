@@ -16,12 +16,12 @@
 //!
 //! Twin: `compiler/src/wgsl/render/penumbra.wgsl`.
 
-use super::camera::{FAR, Ray, Span, slab};
+use super::camera::{FAR, Ray, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Integrator, Solid, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
-use super::surface::{EPSILON, MAX_STEPS};
+use super::surface::{EPSILON, MAX_STEPS, Met};
 use crate::real::{Real, Vec3, add, length, scale, sub};
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -128,11 +128,11 @@ impl<F: Fields> Integrator<'_, F> {
     fn walk(&mut self, cones: &[Cone<F::Real>]) -> Vec<F::Real> {
         let zero = F::Real::ZERO;
         let mut lowest: Vec<_> = cones.iter().map(|cone| squared_sine(wide(cone.slope))).collect();
-        let spans = self.cone_spans(cones);
+        let met = self.met_by_cones(cones);
         let mut feelers: Vec<_> =
             (0..cones.len()).map(|cone| Feeler { cone, t: zero, last: [[zero; 2]; 2] }).collect();
         for _ in 0..MAX_STEPS {
-            let around = self.around(cones, &spans, &feelers);
+            let around = self.around(cones, &met, &feelers);
             let mut left = Vec::with_capacity(feelers.len());
             for (feeler, around) in feelers.into_iter().zip(around) {
                 let cone = &cones[feeler.cone];
@@ -166,36 +166,42 @@ impl<F: Fields> Integrator<'_, F> {
         lowest.into_iter().zip(cones).map(|(lowest, cone)| clearance(lowest, cone.slope)).collect()
     }
 
-    /// Parts of the rays where a solid's box is within the cone.
-    fn cone_spans(&self, cones: &[Cone<F::Real>]) -> Vec<Vec<Span<F::Real>>> {
-        let span = |solid: &Solid<F::Real>, cone: &Cone<F::Real>| {
+    /// The solids whose boxes are within cones, with the parts of the rays where they are.
+    fn met_by_cones(&self, cones: &[Cone<F::Real>]) -> Vec<Met<F::Real>> {
+        let span = |cone: &Cone<F::Real>, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
             let ray = &cone.shadow.ray;
-            let below = sub(solid.lo, ray.origin).map(Real::abs);
-            let above = sub(solid.hi, ray.origin).map(Real::abs);
+            let below = sub(lo, ray.origin).map(Real::abs);
+            let above = sub(hi, ray.origin).map(Real::abs);
             let farthest = length([0, 1, 2].map(|axis| below[axis].max(above[axis])));
             let width = wide(cone.slope) * farthest.min(cone.shadow.length);
-            slab(ray, solid.lo.map(|x| x - width), solid.hi.map(|x| x + width)).loosened()
+            slab(ray, lo.map(|x| x - width), hi.map(|x| x + width)).loosened()
         };
-        let solids = self.scene.solids.iter();
-        solids.map(|solid| cones.iter().map(|cone| span(solid, cone)).collect()).collect()
+        let found = self.scene.solids_where(cones.len(), |i, lo, hi| span(&cones[i], lo, hi).is_some());
+        let met = |solid: usize| {
+            let Solid { lo, hi, .. } = self.scene.solids[solid];
+            let spans = cones.iter().map(|cone| span(cone, lo, hi)).collect();
+            Met { solid, side: F::Real::ONE, spans }
+        };
+        found.into_iter().map(met).collect()
     }
 
     /// Looks around from every feeler.
     fn around(
         &mut self,
         cones: &[Cone<F::Real>],
-        spans: &[Vec<Span<F::Real>>],
+        all_met: &[Met<F::Real>],
         feelers: &[Feeler<F::Real>],
     ) -> Vec<Around<F::Real>> {
         let far = F::Real::from_f32(FAR);
         let mut all = vec![Around { distance: far, safe: far, gap: far }; feelers.len()];
         let scene = self.scene;
-        for (index, solid) in scene.solids.iter().enumerate() {
+        for met in all_met {
+            let solid = &scene.solids[met.solid];
             // Find the feelers near this solid's box, and how far the others are from it.
             let mut here = Vec::new();
             let mut points = Points::new();
             for (which, feeler) in feelers.iter().enumerate() {
-                let span = spans[index][feeler.cone];
+                let span = met.spans[feeler.cone];
                 if span.is_some() && feeler.t < span.entry {
                     all[which].gap = all[which].gap.min(span.entry - feeler.t);
                 } else if span.is_some() && feeler.t <= span.exit {

@@ -129,7 +129,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
     if frame.media.is_empty() {
         return StepChoice::new(1.0, Quadrature::Midpoint, 0.0);
     }
-    let tapes = Tapes::new(program);
+    let tapes = Tapes::of_frame(program, frame);
     let pilot = Pilot::new(frame, &tapes, size);
     let mut rounds: Vec<Round> = Vec::new();
     let least = least_step(frame);

@@ -1,6 +1,6 @@
 //! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
 
-use super::cells::Cells;
+use super::box_tree::BoxTree;
 use super::fields::Fields;
 use super::light_grid::Grid;
 use super::medium::STOP;
@@ -27,6 +27,8 @@ pub(crate) struct Scene<R> {
     pub(crate) remoteness: R,
     /// Solids whose box is not empty.
     pub(crate) solids: Vec<Solid<R>>,
+    /// Their boxes; empty where all solids are to be asked.
+    pub(crate) solid_boxes: BoxTree<R>,
     /// Media whose box is not empty.
     pub(crate) media: Vec<Medium<R>>,
     /// Lights.
@@ -97,7 +99,7 @@ pub(crate) struct Medium<R> {
     pub(crate) lo: Vec3<R>,
     pub(crate) hi: Vec3<R>,
     /// Boxes in which it is; none if it may be anywhere in its own.
-    pub(crate) cells: Cells<R>,
+    pub(crate) cells: BoxTree<R>,
 }
 
 /// See [`vol_compiler::frame::LightFrame`].
@@ -132,12 +134,15 @@ impl<R: Real> Scene<R> {
             occlusion: R::from_f32(light.occlusion),
             index,
         });
+        let solids = solids(frame);
+        let boxes = solids.iter().filter(|_| frame.skips.has(Skip::Objects));
         Self {
+            solid_boxes: BoxTree::new(boxes.map(|solid| [solid.lo, solid.hi]).collect()),
             footprint: (R::from_f32(2.0) * length(camera.up)) / size[1],
             remoteness: length(camera.origin),
             camera,
             size,
-            solids: solids(frame),
+            solids,
             media: media(frame),
             lights: lights.collect(),
             grids: frame.light_grids.iter().map(|grid| grid.as_ref().map(Grid::new)).collect(),
@@ -148,6 +153,20 @@ impl<R: Real> Scene<R> {
             shadow_step: R::from_f32(job.shadow_step),
             way: Way::Comb,
             quadrature: job.quadrature,
+        }
+    }
+
+    /// Indices, in order, of the solids of which `holds` may be true for at least one of `count` questions; it is told
+    /// the question and a box, and must be true of every box around one of which it is true.
+    pub(crate) fn solids_where(
+        &self,
+        count: usize,
+        holds: impl Fn(usize, Vec3<R>, Vec3<R>) -> bool,
+    ) -> Vec<usize> {
+        if self.solid_boxes.is_empty() {
+            (0..self.solids.len()).collect()
+        } else {
+            self.solid_boxes.any(count, holds)
         }
     }
 
@@ -185,7 +204,7 @@ fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
             lighting: medium.lighting,
             lo: vector(bounds.lo),
             hi: vector(bounds.hi),
-            cells: Cells::new(cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect()),
+            cells: BoxTree::new(cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect()),
         })
     };
     frame.media.iter().filter_map(medium).collect()

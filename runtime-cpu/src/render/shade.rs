@@ -9,6 +9,7 @@ use super::scene::{Integrator, Light};
 use super::shadow::ShadowRay;
 use super::surface::{Contact, shadow_bias};
 use crate::real::{Real, Vec3, add, dot, mul, scale, splat, sub};
+use std::collections::BTreeMap;
 use vol_compiler::frame::MAX_SPREAD_TANGENT;
 use vol_compiler::program::SURFACE_OUTPUTS;
 
@@ -106,8 +107,13 @@ impl<F: Fields> Integrator<'_, F> {
         let dark = Response { emitted: zero, diffuse: zero, specular: zero, shininess: F::Real::ZERO };
         let mut responses = vec![dark; contacts.len()];
         let half = F::Real::from_f32(0.5);
-        for (index, solid) in self.scene.solids.iter().enumerate() {
-            let here: Vec<usize> = (0..contacts.len()).filter(|&c| contacts[c].solid == index).collect();
+        let mut by_solid: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        contacts
+            .iter()
+            .enumerate()
+            .for_each(|(c, contact)| by_solid.entry(contact.solid).or_default().push(c));
+        for (index, here) in by_solid {
+            let solid = &self.scene.solids[index];
             if solid.shows_normals {
                 for which in here {
                     responses[which].emitted = scale(add(contacts[which].normal, splat(F::Real::ONE)), half);

@@ -117,11 +117,10 @@ impl<F: Fields> Integrator<'_, F> {
             return blocked;
         }
         let paths: Vec<_> = rays.iter().map(|ray| ray.ray).collect();
-        let outside = vec![F::Real::ONE; self.scene.solids.len()];
-        let spans = self.object_spans(&paths, &outside);
+        let met = self.met_from_outside(&paths);
         let mut walkers: Vec<_> = start(rays.len());
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(&paths, &spans, &walkers, &outside);
+            let near = self.nearest(&paths, &met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.

@@ -1,7 +1,7 @@
 //! Where rays meet solids: sphere tracing, by what [`super::stride`] makes of the distances.
 //!
-//! All rays of a batch walk together, one step each at a time, and every solid is evaluated for
-//! the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
+//! All rays of a batch walk together, one step each at a time. A tree over the boxes of the solids tells which
+//! of them some ray meets at all; each of these is evaluated for the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
 //! distance and its normal change sign for camera rays, so the ray ends at the far wall.
 //!
 //! A ray hits what it enters: it walks on, at least a fortieth of a pixel at a time, until a distance
@@ -12,9 +12,10 @@
 
 use super::camera::{FAR, Ray, Span, contains, slab};
 use super::fields::{Fields, Points};
-use super::scene::{Batches, Integrator, Scene};
+use super::scene::{Batches, Integrator, Scene, Solid};
 use super::stride::Ahead;
 use crate::real::{Real, Vec3, dot, length, scale};
+use std::collections::BTreeMap;
 
 /// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
 pub(crate) const MAX_STEPS: u32 = 2000;
@@ -66,6 +67,17 @@ impl<R: Real> Near<R> {
         let even = if stuck { (self.rest / left).min(self.gap) } else { R::ZERO };
         free.max(least).max(even)
     }
+}
+
+/// A solid whose box some ray of a batch meets.
+#[derive(Debug)]
+pub(crate) struct Met<R> {
+    /// Its index.
+    pub(crate) solid: usize,
+    /// Sign of its distance for these rays.
+    pub(crate) side: R,
+    /// The part of each ray in its box.
+    pub(crate) spans: Vec<Span<R>>,
 }
 
 /// Where a ray meets a solid.
@@ -121,8 +133,10 @@ impl<'a, F: Fields> Integrator<'a, F> {
     fn find_sides(&mut self) {
         let scene = self.scene;
         let eye = Points::from_iter([scene.camera.origin]);
-        for (index, solid) in scene.solids.iter().enumerate() {
-            if contains(solid.lo, solid.hi, scene.camera.origin) {
+        let holds = |lo, hi| contains(lo, hi, scene.camera.origin);
+        for index in scene.solids_where(1, |_, lo, hi| holds(lo, hi)) {
+            let solid = &scene.solids[index];
+            if holds(solid.lo, solid.hi) {
                 let [distance] = self.fields.sample(solid.distance, &eye);
                 let inside = distance[0] < F::Real::ZERO;
                 self.sides[index] = if inside { -F::Real::ONE } else { F::Real::ONE };
@@ -130,38 +144,50 @@ impl<'a, F: Fields> Integrator<'a, F> {
         }
     }
 
-    /// Parts of the rays in the box of each solid, a little longer than rounding can make them; all
-    /// of the ray for a solid that is seen from within, since it ends where the box may end.
-    pub(crate) fn object_spans(&self, rays: &[Ray<F::Real>], sides: &[F::Real]) -> Vec<Vec<Span<F::Real>>> {
-        let solids = self.scene.solids.iter().zip(sides);
-        let spans = solids.map(|(solid, &side)| {
-            let span = |ray| {
-                let span = slab(ray, solid.lo, solid.hi).loosened();
-                Span { exit: if side < F::Real::ZERO { F::Real::from_f32(FAR) } else { span.exit }, ..span }
-            };
-            rays.iter().map(span).collect()
-        });
-        spans.collect()
+    /// The solids whose boxes camera rays meet; a solid that is seen from within may be anywhere on
+    /// the rest of the ray, since it ends where the box may end.
+    fn met_from_the_eye(&self, rays: &[Ray<F::Real>]) -> Vec<Met<F::Real>> {
+        let mut all = self.met_from_outside(rays);
+        for met in &mut all {
+            met.side = self.sides[met.solid];
+            if met.side < F::Real::ZERO {
+                met.spans.iter_mut().for_each(|span| span.exit = F::Real::from_f32(FAR));
+            }
+        }
+        all
+    }
+
+    /// The solids whose boxes rays meet, with the parts of the rays in them, a little longer than rounding can
+    /// make them.
+    pub(crate) fn met_from_outside(&self, rays: &[Ray<F::Real>]) -> Vec<Met<F::Real>> {
+        let span = |ray: &Ray<F::Real>, lo, hi| slab(ray, lo, hi).loosened();
+        let found = self.scene.solids_where(rays.len(), |ray, lo, hi| span(&rays[ray], lo, hi).is_some());
+        let met = |solid: usize| {
+            let Solid { lo, hi, .. } = self.scene.solids[solid];
+            let spans = rays.iter().map(|ray| span(ray, lo, hi)).collect();
+            Met { solid, side: F::Real::ONE, spans }
+        };
+        found.into_iter().map(met).collect()
     }
 
     /// Looks around from every walker.
     pub(crate) fn nearest(
         &mut self,
         rays: &[Ray<F::Real>],
-        spans: &[Vec<Span<F::Real>>],
+        all_met: &[Met<F::Real>],
         walkers: &[Walker<F::Real>],
-        sides: &[F::Real],
     ) -> Vec<Near<F::Real>> {
         let far = F::Real::from_f32(FAR);
         let mut all =
             vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
-        for (index, solid) in scene.solids.iter().enumerate() {
+        for met in all_met {
+            let solid = &scene.solids[met.solid];
             // Find the walkers in this solid's box, and how far the others are from it.
             let mut here = Vec::new();
             let mut points = Points::new();
             for (which, walker) in walkers.iter().enumerate() {
-                let span = spans[index][walker.ray];
+                let span = met.spans[walker.ray];
                 if span.is_some() && walker.t < span.entry {
                     all[which].gap = all[which].gap.min(span.entry - walker.t);
                 } else if span.is_some() && walker.t <= span.exit {
@@ -174,7 +200,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
             let [mut safe] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
             for (&which, value) in here.iter().zip(&mut safe) {
-                *value = sides[index] * *value;
+                *value = met.side * *value;
                 all[which].value = all[which].value.min(*value);
             }
             let ahead = |which: &usize| {
@@ -185,7 +211,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
             for (which, safe) in here.into_iter().zip(safe) {
                 if safe < all[which].distance {
                     all[which].distance = safe;
-                    all[which].solid = index;
+                    all[which].solid = met.solid;
                 }
             }
         }
@@ -197,12 +223,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
         if self.scene.solids.is_empty() {
             return Vec::new();
         }
-        let sides = self.sides.clone();
-        let spans = self.object_spans(rays, &sides);
+        let met = self.met_from_the_eye(rays);
         let mut walkers: Vec<_> = start(rays.len());
         let mut hits = Vec::new();
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &spans, &walkers, &sides);
+            let near = self.nearest(rays, &met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 // Stop inside a solid; on the last step also where it would have been near enough.
@@ -229,11 +254,10 @@ impl<'a, F: Fields> Integrator<'a, F> {
     /// Moves hits onto their surfaces and finds the normals.
     fn touch(&mut self, rays: &[Ray<F::Real>], hits: &[(Walker<F::Real>, usize)]) -> Vec<Contact<F::Real>> {
         let mut contacts = Vec::with_capacity(hits.len());
-        for solid in 0..self.scene.solids.len() {
-            let here: Vec<_> = hits.iter().filter(|hit| hit.1 == solid).map(|hit| hit.0).collect();
-            if !here.is_empty() {
-                contacts.extend(self.refine(rays, solid, here));
-            }
+        let mut by_solid: BTreeMap<usize, Vec<_>> = BTreeMap::new();
+        hits.iter().for_each(|&(walker, solid)| by_solid.entry(solid).or_default().push(walker));
+        for (solid, here) in by_solid {
+            contacts.extend(self.refine(rays, solid, here));
         }
         contacts.sort_unstable_by_key(|contact| contact.ray);
         contacts

@@ -1,16 +1,16 @@
-//! The boxes in which a medium may be, as a tree, and what is near them.
+//! Boxes as a tree: those in which a medium may be, and those of the solids.
 //!
-//! In: boxes in any order. Out: for a ray the parts of it that are near some box, in order; for a point whether it is.
+//! In: boxes in any order. Out: for a ray the boxes that it meets or passes near, for a point those that hold it.
 //! A ray asks of each node of the tree once, so what it costs grows with the boxes beside it and not with all of them.
 //!
 //! Example: of the 400 boxes of a tube of 100 segments a ray across it looks at about 30.
 
-use super::camera::{Ray, Span, slab};
+use super::camera::{Ray, Span, contains, slab};
 use crate::real::{Real, Vec3, add, splat, sub};
 
 /// A tree of boxes.
 #[derive(Debug)]
-pub(crate) struct Cells<R> {
+pub(crate) struct BoxTree<R> {
     /// Each before those below it.
     nodes: Vec<Node<R>>,
 }
@@ -22,73 +22,91 @@ struct Node<R> {
     hi: Vec3<R>,
     /// Index of the node after all that are in this one; the next one, if there are none in it.
     skip: usize,
+    /// Index of the box, where it is one.
+    index: usize,
 }
 
-impl<R: Real> Cells<R> {
+impl<R: Real> BoxTree<R> {
     /// Puts boxes, smallest and largest corners, into a tree.
-    pub(crate) fn new(mut boxes: Vec<[Vec3<R>; 2]>) -> Self {
-        let mut cells = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
-        if !boxes.is_empty() {
-            cells.build(&mut boxes);
+    pub(crate) fn new(boxes: Vec<[Vec3<R>; 2]>) -> Self {
+        let mut tree = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
+        let mut numbered: Vec<_> = boxes.into_iter().enumerate().collect();
+        if !numbered.is_empty() {
+            tree.build(&mut numbered);
         }
-        cells
+        tree
     }
 
-    /// Whether there are no boxes: then the medium may be anywhere.
+    /// Whether there are no boxes.
     pub(crate) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    fn build(&mut self, boxes: &mut [[Vec3<R>; 2]]) {
-        let (mut lo, mut hi) = (boxes[0][0], boxes[0][1]);
-        for [other_lo, other_hi] in boxes.iter() {
+    fn build(&mut self, boxes: &mut [(usize, [Vec3<R>; 2])]) {
+        let (index, [mut lo, mut hi]) = boxes[0];
+        for (_, [other_lo, other_hi]) in boxes.iter() {
             for axis in 0..3 {
                 lo[axis] = lo[axis].min(other_lo[axis]);
                 hi[axis] = hi[axis].max(other_hi[axis]);
             }
         }
-        let index = self.nodes.len();
-        self.nodes.push(Node { lo, hi, skip: index + 1 });
+        let node = self.nodes.len();
+        self.nodes.push(Node { lo, hi, skip: node + 1, index });
         if boxes.len() > 1 {
             // In halves along the longest axis.
             let size = sub(hi, lo);
             let axis = (0..3).fold(0, |most, axis| if size[axis] > size[most] { axis } else { most });
-            let middle = |[lo, hi]: &[Vec3<R>; 2]| (lo[axis] + hi[axis]).to_f64();
+            let middle = |(_, [lo, hi]): &(usize, [Vec3<R>; 2])| (lo[axis] + hi[axis]).to_f64();
             let half = boxes.len() / 2;
             boxes.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
             let (before, after) = boxes.split_at_mut(half);
             self.build(before);
             self.build(after);
-            self.nodes[index].skip = self.nodes.len();
+            self.nodes[node].skip = self.nodes.len();
         }
     }
 
-    /// The boxes grown by `reach` that hold what is asked for, as far as their own tree says so.
-    fn visit<T>(
-        &self,
-        reach: R,
-        ask: impl Fn(Vec3<R>, Vec3<R>) -> Option<T>,
-        mut found: impl FnMut(T) -> bool,
-    ) {
-        let reach = splat(reach);
-        let mut index = 0;
-        while let Some(node) = self.nodes.get(index) {
-            let answer = ask(sub(node.lo, reach), add(node.hi, reach));
-            let is_leaf = node.skip == index + 1;
-            index = if answer.is_some() { index + 1 } else { node.skip };
+    /// Goes through the boxes of which `ask` finds something, each with its index and what was found; a box that
+    /// holds others is asked first. Ends early where `found` says so.
+    fn visit<T>(&self, ask: impl Fn(Vec3<R>, Vec3<R>) -> Option<T>, mut found: impl FnMut(usize, T) -> bool) {
+        let mut at = 0;
+        while let Some(node) = self.nodes.get(at) {
+            let answer = ask(node.lo, node.hi);
+            let is_leaf = node.skip == at + 1;
+            at = if answer.is_some() { at + 1 } else { node.skip };
             if let Some(answer) = answer.filter(|_| is_leaf)
-                && !found(answer)
+                && !found(node.index, answer)
             {
                 return;
             }
         }
     }
 
+    /// Indices of the boxes of which `holds` is true for at least one of `count` questions, in order. What is true
+    /// of a box must be true of every box around it.
+    pub(crate) fn any(&self, count: usize, holds: impl Fn(usize, Vec3<R>, Vec3<R>) -> bool) -> Vec<usize> {
+        let mut found = Vec::new();
+        for question in 0..count {
+            let ask = |lo, hi| holds(question, lo, hi).then_some(());
+            self.visit(ask, |index, ()| {
+                found.push(index);
+                true
+            });
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
     /// The parts of a ray up to `end` that are within `reach` of boxes, one for each of them.
     pub(crate) fn spans(&self, ray: &Ray<R>, reach: R, end: R) -> Vec<Span<R>> {
         let mut spans = Vec::new();
-        let meets = |lo, hi| Some(slab(ray, lo, hi)).filter(|span| span.entry <= span.exit.min(end));
-        self.visit(reach, meets, |span| {
+        let reach = splat(reach);
+        let meets = |lo, hi| {
+            let span = slab(ray, sub(lo, reach), add(hi, reach));
+            (span.entry <= span.exit.min(end)).then_some(span)
+        };
+        self.visit(meets, |_, span| {
             spans.push(span);
             true
         });
@@ -99,7 +117,7 @@ impl<R: Real> Cells<R> {
     pub(crate) fn is_met_by(&self, ray: &Ray<R>) -> bool {
         let mut met = false;
         let meets = |lo, hi| slab(ray, lo, hi).is_some().then_some(());
-        self.visit(R::ZERO, meets, |()| {
+        self.visit(meets, |_, ()| {
             met = true;
             false
         });
@@ -109,8 +127,9 @@ impl<R: Real> Cells<R> {
     /// Whether a point is within `reach` of one of the boxes.
     pub(crate) fn is_near(&self, point: Vec3<R>, reach: R) -> bool {
         let mut near = false;
-        let holds = |lo: Vec3<R>, hi: Vec3<R>| super::camera::contains(lo, hi, point).then_some(());
-        self.visit(reach, holds, |()| {
+        let reach = splat(reach);
+        let holds = |lo, hi| contains(sub(lo, reach), add(hi, reach), point).then_some(());
+        self.visit(holds, |_, ()| {
             near = true;
             false
         });
@@ -143,7 +162,7 @@ mod tests {
     #[test]
     fn spans_are_those_of_all_boxes() {
         for count in [1, 2, 3, 250] {
-            let cells = Cells::new(boxes(count));
+            let tree = BoxTree::new(boxes(count));
             for ray in rays() {
                 let order = |spans: Vec<Span<f64>>| {
                     let mut ends: Vec<_> = spans.iter().map(|span| [span.entry, span.exit]).collect();
@@ -154,16 +173,16 @@ mod tests {
                     .into_iter()
                     .map(|[lo, hi]| slab(&ray, sub(lo, splat(0.05)), add(hi, splat(0.05))));
                 let expected = grown.filter(|span| span.is_some() && span.entry <= 4.0).collect();
-                assert_eq!(order(cells.spans(&ray, 0.05, 4.0)), order(expected));
+                assert_eq!(order(tree.spans(&ray, 0.05, 4.0)), order(expected));
                 let met = boxes(count).iter().any(|&[lo, hi]| slab(&ray, lo, hi).is_some());
-                assert_eq!(cells.is_met_by(&ray), met);
+                assert_eq!(tree.is_met_by(&ray), met);
             }
         }
     }
 
     #[test]
     fn points_are_near_where_they_are_in_a_box() {
-        let cells = Cells::new(boxes(250));
+        let tree = BoxTree::new(boxes(250));
         let mut near = 0;
         for ray in rays() {
             for i in 0..20 {
@@ -171,16 +190,28 @@ mod tests {
                 let inside = |[lo, hi]: [Vec3<f64>; 2]| {
                     (0..3).all(|axis| lo[axis] - 0.1 <= point[axis] && point[axis] <= hi[axis] + 0.1)
                 };
-                assert_eq!(cells.is_near(point, 0.1), boxes(250).into_iter().any(inside));
-                near += usize::from(cells.is_near(point, 0.1));
+                assert_eq!(tree.is_near(point, 0.1), boxes(250).into_iter().any(inside));
+                near += usize::from(tree.is_near(point, 0.1));
             }
         }
         assert!(near > 100, "{near}");
     }
 
     #[test]
+    fn any_finds_each_box_once_and_in_order() {
+        let all = boxes(250);
+        let tree = BoxTree::new(all.clone());
+        let rays: Vec<_> = rays().skip(20).step_by(5).take(20).collect();
+        let meets = |ray: usize, lo, hi| slab(&rays[ray], lo, hi).is_some();
+        let met = |&box_: &usize| (0..rays.len()).any(|ray| meets(ray, all[box_][0], all[box_][1]));
+        let expected: Vec<usize> = (0..all.len()).filter(met).collect();
+        assert!(expected.len() > 7 && expected.len() < 200, "{}", expected.len());
+        assert_eq!(tree.any(rays.len(), meets), expected);
+    }
+
+    #[test]
     fn without_boxes_there_is_nothing_to_meet() {
-        let cells = Cells::<f64>::new(Vec::new());
-        assert!(cells.is_empty() && rays().all(|ray| !cells.is_met_by(&ray)));
+        let tree = BoxTree::<f64>::new(Vec::new());
+        assert!(tree.is_empty() && rays().all(|ray| !tree.is_met_by(&ray)));
     }
 }

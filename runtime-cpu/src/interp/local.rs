@@ -19,7 +19,7 @@ mod outline;
 
 use crate::isa::Isa;
 use bounds::{Choice, Eight, choices};
-use outline::{Outline, Outlines, Room};
+use outline::{Outline, Outlines, Room, spine};
 use std::borrow::Cow;
 use std::mem::size_of;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
@@ -31,7 +31,7 @@ use vol_compiler::tape::{Tape, TapeOp};
 use vol_compiler::wgsl::render::padded;
 
 /// Most bytes of the cells of all functions of a frame.
-const MOST_BYTES: usize = 512 << 20;
+const MOST_BYTES: usize = 768 << 20;
 
 /// As many for each instruction of those functions, if that is less.
 const BYTES_PER_INSTRUCTION: usize = 32 << 10;
@@ -40,7 +40,7 @@ const BYTES_PER_INSTRUCTION: usize = 32 << 10;
 pub(crate) fn most_bytes(module: &Module, frame: &Frame, threads: usize) -> usize {
     let instructions: usize = candidates(module, frame).map(|(_, id)| length(module, id)).sum();
     // Results are at most eight an instruction, and nearly always one.
-    let step = size_of::<TapeOp>() + 2 * size_of::<Choice>();
+    let step = size_of::<TapeOp>() + 16 + 2 * size_of::<Choice>();
     let register = size_of::<Eight>() + 16;
     for_cells(instructions) + instructions * (step + 2 * threads * register)
 }
@@ -102,6 +102,8 @@ struct Root {
     place: Place,
     /// The function, each of whose values has a register of its own.
     tape: Tape,
+    /// Which of its steps choose among large parts.
+    spine: Vec<bool>,
     cell: Cell,
     /// Room for those who divide cells.
     rooms: Mutex<Vec<Workroom>>,
@@ -177,8 +179,8 @@ impl LocalTapes {
             roots: module.functions.iter().map(|_| None).collect(),
             uniforms: uniforms.to_vec(),
             isa,
-            left_for_outlines: AtomicUsize::new(bytes / 2),
-            left_for_tapes: AtomicUsize::new(bytes / 2),
+            left_for_outlines: AtomicUsize::new(bytes / 3 * 2),
+            left_for_tapes: AtomicUsize::new(bytes / 3),
             is_eager: false,
         }
     }
@@ -189,7 +191,8 @@ impl LocalTapes {
         let choices = tape.ops.iter().filter(|step| is_choice(step)).count();
         if choices >= FEW_CHOICES && self.roots[id.index()].is_none() {
             let cell = Cell::new(Arc::new(Outline::whole(&tape)), 0, 0);
-            self.roots[id.index()] = Some(Root { place, tape, cell, rooms: Mutex::default() });
+            self.roots[id.index()] =
+                Some(Root { place, spine: spine(&tape), tape, cell, rooms: Mutex::default() });
         }
     }
 
@@ -231,7 +234,7 @@ impl LocalTapes {
         let places: [Place; 8] = std::array::from_fn(|index| place.part(index));
         root.with_room(|Workroom { bounds, room }| {
             let decided = choices(self.isa, &root.tape, &cell.outline, (&places, &self.uniforms), bounds);
-            let outlines = Outlines::new(&root.tape, &cell.outline, &decided, room);
+            let outlines = Outlines::new(&root.tape, &root.spine, &cell.outline, &decided, room);
             let worth_it = (0.75 / cell.groups() * before as f32) as usize;
             let most = if self.is_eager { before.saturating_sub(1) } else { worth_it };
             let is_worth_it = |index: usize| outlines.lengths[index] <= most;

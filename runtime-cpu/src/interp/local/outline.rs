@@ -16,10 +16,40 @@ use std::sync::{Arc, OnceLock};
 use vol_compiler::ops::{Op, operation};
 use vol_compiler::tape::{Register, Scalar, Tape, TapeLoop, TapeOp};
 
-/// Outlines of more steps than this are written with few gaps, since those take memory: at least [`GAP`] steps at once
-/// are left out.
+/// Outlines of more steps than this are written with few gaps, since those take memory.
 const LONG: usize = 8 << 10;
-const GAP: u32 = 8;
+
+/// Which steps of a tape choose among large parts: those between which and the results there are only other choices, and
+/// what follows the last of all. Of a union of boxes, say, those that join boxes, and not those within each box.
+pub(super) fn spine(tape: &Tape) -> Vec<bool> {
+    let mut writer = vec![0; tape.registers as usize];
+    for (index, step) in tape.ops.iter().enumerate() {
+        writer[written(tape, step)].fill(index);
+    }
+    let (mut spine, mut seen) = (vec![false; tape.ops.len()], vec![false; tape.ops.len()]);
+    // Steps to look at, and whether there was a choice on the way.
+    let mut left: Vec<(usize, bool)> =
+        tape.outputs.iter().map(|output| (writer[output.index()], false)).collect();
+    while let Some((index, below)) = left.pop() {
+        if std::mem::replace(&mut seen[index], true) {
+            continue;
+        }
+        let step = &tape.ops[index];
+        let chooses = match step {
+            TapeOp::Apply { op, .. } => {
+                matches!(op, Op::Min | Op::Max | Op::Select | Op::Less | Op::LessEqual | Op::Sub)
+            }
+            _ => false,
+        };
+        spine[index] = chooses;
+        if chooses || !below {
+            left.extend(
+                operands(tape, step).iter().map(|operand| (writer[operand.index()], below || chooses)),
+            );
+        }
+    }
+    spine
+}
 
 /// The steps of a tape that matter in a box.
 #[derive(Debug)]
@@ -132,7 +162,15 @@ enum Kept {
 
 impl<'a> Outlines<'a> {
     /// Goes from the results back to what they need.
-    pub(super) fn new(tape: &'a Tape, around: &'a Outline, choices: &[Choice], room: &mut Room) -> Self {
+    /// Of a long outline only choices of the `spine` leave anything out.
+    pub(super) fn new(
+        tape: &'a Tape,
+        spine: &[bool],
+        around: &'a Outline,
+        choices: &[Choice],
+        room: &mut Room,
+    ) -> Self {
+        let is_short = around.steps <= LONG;
         around.outputs.iter().for_each(|output| room.read[output.index()] = u8::MAX);
         let mut all = Self { tape, around, kept: Vec::new(), lengths: [0; 8] };
         let mut choices = choices.iter().rev().peekable();
@@ -141,7 +179,7 @@ impl<'a> Outlines<'a> {
                 Part::Steps(steps) => {
                     for index in steps.clone().rev() {
                         let choice = choices.next_if(|choice| choice.step == index);
-                        all.keep_step(index, choice.filter(|choice| all.matters(choice)), room);
+                        all.keep_step(index, choice.filter(|_| is_short || spine[index as usize]), room);
                     }
                 }
                 Part::Same { to, from } => {
@@ -162,18 +200,6 @@ impl<'a> Outlines<'a> {
         }
         all.kept.reverse();
         all
-    }
-
-    /// Whether a choice leaves enough out to be worth a gap in a long outline.
-    fn matters(&self, choice: &Choice) -> bool {
-        let leaves_much_out = match choice.sides {
-            // Of a blend all that is added where two parts are near each other.
-            _ if matches!(self.tape.ops[choice.step as usize], TapeOp::Apply { op: Op::Sub, .. }) => true,
-            // Registers are numbered in the order of the steps: those of large operands are far from each other.
-            [(Side::Register(a), _), (Side::Register(b), _)] => a.0.abs_diff(b.0) >= GAP,
-            _ => false,
-        };
-        leaves_much_out || self.around.steps <= LONG
     }
 
     fn count(&mut self, boxes: u8) {

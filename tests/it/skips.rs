@@ -38,7 +38,7 @@ fn many_parts() -> String {
     )
 }
 
-/// As many solids of their own, one around the eye, in a light with a size that they darken corners in.
+/// As many solids of their own and a plane without end, in a light with a size that they darken corners in.
 fn many_objects() -> String {
     let at = |i: u32, step: f64| 3.0 * (step * f64::from(i)).fract();
     let ball = |i: u32| {
@@ -46,7 +46,7 @@ fn many_objects() -> String {
         format!("object o{i} {{ shape: (box((0.2, 0.2, 0.2)) - sphere(0.26)).translate({place}) }}\n")
     };
     (0..90).map(ball).collect::<String>()
-        + "object room { shape: sphere(30) }\n\
+        + "object ground { shape: plane((0, 1, 0)) }\n\
            light sun { from: (0.4, 0.8, 0.5), spread: 5deg, occlusion: 0.3 }\n\
            light lamp { at: (1, 5, 2), color: 20, radius: 0.3 }\n\
            camera { from: (4, 4, 9), at: (1.5, 1.5, 1.5), fov: 40deg }\n"
@@ -85,6 +85,7 @@ fn neutral_in(skip: Skip, text: &str, size: [u32; 2]) -> Result<(), Failed> {
         let colors = |image: &Image| image.pixels.iter().flat_map(|pixel| pixel.color).collect::<Vec<f32>>();
         let (without, with) = (colors(&without), colors(&with));
         let brightest = without.iter().copied().fold(0.0, f32::max);
+        ensure(brightest > 0.0, || "the picture is black".to_owned())?;
         let apart = without.iter().zip(&with).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
         ensure(apart <= bound(skip) * brightest, || format!("{apart:e} apart, brightest {brightest}"))?;
     }

@@ -7,6 +7,8 @@ use std::fmt::Write as _;
 use std::hint::black_box;
 use vol_compiler::curve::{CurveTable, Quadratic, prepare};
 use vol_compiler::ir::{FunctionId, Module, text};
+use vol_compiler::ops::interval::Interval;
+use vol_compiler::passes::narrow;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
 
 const POINTS: usize = 4096;
@@ -28,6 +30,31 @@ fn arithmetic() -> String {
     }
     let _ = write!(body, "return %{a}");
     body
+}
+
+/// A union of six balls: 60 operations, of which 5 choose.
+fn balls() -> String {
+    let mut body = String::from("%0 = input 0\n%1 = input 1\n%2 = input 2\n");
+    let (mut next, mut union) = (3, None);
+    let mut add = |line: String| {
+        let _ = writeln!(body, "%{next} = {line}");
+        next += 1;
+        next - 1
+    };
+    for ball in 0..6 {
+        let squares = [0, 1, 2].map(|axis| {
+            let centre = add(format!("constant {:?}", ((ball * 7 + axis * 3) % 5) as f32 - 2.0));
+            let offset = add(format!("sub %{axis} %{centre}"));
+            add(format!("mul %{offset} %{offset}"))
+        });
+        let sum = add(format!("add %{} %{}", squares[0], squares[1]));
+        let sum = add(format!("add %{sum} %{}", squares[2]));
+        let length = add(format!("sqrt %{sum}"));
+        let radius = add("constant 0.7".to_owned());
+        let distance = add(format!("sub %{length} %{radius}"));
+        union = Some(union.map_or(distance, |union| add(format!("min %{union} %{distance}"))));
+    }
+    body + &format!("return %{}", union.unwrap_or(0))
 }
 
 /// A function of three inputs that does something with its position.
@@ -52,11 +79,21 @@ fn measure(c: &mut Criterion, name: &str, body: &str, curves: &[CurveTable]) {
     group.finish();
 }
 
+/// What a function becomes in a box: bounds of all its values, and the function without what they decide.
+fn intervals(c: &mut Criterion) {
+    let function = text::parse_function(&format!("fn f(3) {{\n{}\n}}", balls())).expect("well-formed text");
+    let small = [Interval::new(0.0, 0.25), Interval::new(-0.5, -0.25), Interval::new(1.0, 1.25)];
+    c.bench_function("intervals/csg_60", |b| {
+        b.iter(|| narrow::within(black_box(&function), black_box(&small), &[]));
+    });
+}
+
 fn interp(c: &mut Criterion) {
     let arch = Quadratic { a: [-2.0, 0.0, 0.0], b: [0.0, 3.0, 1.0], c: [2.0, 0.0, 0.5] };
     let back = Quadratic { a: [2.0, 0.0, 0.5], b: [4.0, -3.0, 0.0], c: [0.0, -2.0, -1.0] };
     let curves = [prepare(&[arch, back])];
     measure(c, "arithmetic_60", &arithmetic(), &[]);
+    measure(c, "csg_60", &balls(), &[]);
     for (kind, seed) in [("hash", 7), ("table", 0)] {
         measure(
             c,
@@ -75,5 +112,5 @@ fn interp(c: &mut Criterion) {
     measure(c, "exp2", &of_position("%6 = exp2 %0", "%6"), &[]);
 }
 
-criterion_group!(benches, interp);
+criterion_group!(benches, interp, intervals);
 criterion_main!(benches);

@@ -114,6 +114,18 @@ pub enum Scalar {
     Uniform(u32),
 }
 
+impl Scalar {
+    /// The number, given the outputs of the frame function.
+    #[inline(always)]
+    #[must_use]
+    pub fn value(self, uniforms: &[f32]) -> f32 {
+        match self {
+            Self::Number(number) => number,
+            Self::Uniform(index) => uniforms[index as usize],
+        }
+    }
+}
+
 /// Whether an operation may have a scalar for an operand: those of a few instructions that take two numbers.
 #[must_use]
 pub fn takes_scalar(op: Op) -> bool {
@@ -280,12 +292,13 @@ mod tests {
         for seed in 0..500 {
             let shape = random::Shape { curves: 0, operations: 60, ..random::Shape::default() };
             let function = random::function(seed, &shape);
-            let tape = Tape::new(&function);
             let inputs = [0.3, -1.75, 12.5];
             let bits = |values: Vec<f64>| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            let (expected, found) =
-                (walk::walk(&mut Direct, &function, &inputs), by_tape(&tape, &inputs, false));
-            assert_eq!(bits(found), bits(expected), "{}\n{tape:?}", text::print_function(&function));
+            let expected = bits(walk::walk(&mut Direct, &function, &inputs));
+            for tape in [Tape::new(&function), Tape::with_own_registers(&function)] {
+                let found = bits(by_tape(&tape, &inputs, false));
+                assert_eq!(found, expected, "{}\n{tape:?}", text::print_function(&function));
+            }
         }
     }
 

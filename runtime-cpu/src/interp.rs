@@ -33,7 +33,7 @@ use vol_compiler::ir::{FunctionId, Module};
 use vol_compiler::ops::MAX_RESULTS;
 use vol_compiler::program::Program;
 use vol_compiler::skip::Skip;
-use vol_compiler::tape::{Register, Scalar, Tape, TapeLoop, TapeOp};
+use vol_compiler::tape::{Register, Tape, TapeLoop, TapeOp};
 
 /// Points that go through a tape together.
 pub const LANES: usize = 128;
@@ -319,11 +319,7 @@ impl<const WIDTH: usize> VectorKernel for Simple<WIDTH> {
                     }
                 }
                 TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
-                    let scalar = match scalar {
-                        Scalar::Number(number) => number,
-                        Scalar::Uniform(index) => all.uniforms[index as usize],
-                    };
-                    rows.apply_scalar(op, at(to), at(arg), scalar, scalar_first);
+                    rows.apply_scalar(op, at(to), at(arg), scalar.value(all.uniforms), scalar_first);
                 }
                 TapeOp::Loop { .. } => return done,
             }

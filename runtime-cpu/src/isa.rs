@@ -75,9 +75,7 @@ impl Isa {
             Kind::Avx512(simd) => simd.vectorize(Call::<K>(args)),
         }
     }
-}
 
-impl Isa {
     /// Calls a loop that is written for vectors of these instructions.
     #[inline(always)]
     pub(crate) fn run_vectors<K: VectorKernel>(self, args: K::Args<'_>) -> K::Out {

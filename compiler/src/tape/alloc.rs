@@ -129,13 +129,13 @@ impl<'a> Scan<'a> {
     fn step(&mut self, i: usize, inst: &Inst) {
         match inst {
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => {}
-            Inst::Apply { op, args, .. } if self.scalar(*op, args).is_some() => {
-                let Some((scalar, scalar_first)) = self.scalar(*op, args) else { return };
-                let arg = self.operands(i, &args[usize::from(scalar_first)..][..1])[0];
-                let to = self.results(i);
-                self.push(i, TapeOp::ApplyScalar { op: *op, scalar_first, scalar, to, arg });
-            }
             Inst::Apply { op, data, args } => {
+                if let Some((scalar, scalar_first)) = self.scalar(*op, args) {
+                    let arg = self.operands(i, &args[usize::from(scalar_first)..][..1])[0];
+                    let to = self.results(i);
+                    self.push(i, TapeOp::ApplyScalar { op: *op, scalar_first, scalar, to, arg });
+                    return;
+                }
                 let registers = self.operands(i, args);
                 let mut args = [Register(0); MAX_OPERANDS];
                 args[..registers.len()].copy_from_slice(&registers);

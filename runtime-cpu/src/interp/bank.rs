@@ -140,24 +140,20 @@ impl<'a, S: Simd, const WIDTH: usize> Rows<'a, S, WIDTH> {
     pub(super) fn apply(&self, op: Op, to: usize, args: [usize; MAX_OPERANDS]) -> bool {
         let ([a, b, c, ..], simd) = (args, self.simd);
         let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let truth = |holds: S::m32s| simd.select_f32s(holds, one, zero);
         match op {
             Op::Add => self.two(to, [a, b], |a, b| simd.add_f32s(a, b)),
             Op::Sub => self.two(to, [a, b], |a, b| simd.sub_f32s(a, b)),
             Op::Mul => self.two(to, [a, b], |a, b| simd.mul_f32s(a, b)),
             Op::Div => self.two(to, [a, b], |a, b| simd.div_f32s(a, b)),
-            Op::Min => self.two(to, [a, b], |a, b| simd.select_f32s(simd.less_than_f32s(a, b), a, b)),
-            Op::Max => self.two(to, [a, b], |a, b| simd.select_f32s(simd.greater_than_f32s(a, b), a, b)),
+            Op::Min => self.two(to, [a, b], |a, b| lesser(simd, a, b)),
+            Op::Max => self.two(to, [a, b], |a, b| greater(simd, a, b)),
             Op::Neg => self.one(to, a, |a| simd.neg_f32s(a)),
             Op::Abs => self.one(to, a, |a| simd.abs_f32s(a)),
             Op::Floor => self.one(to, a, |a| floor(simd, a)),
-            Op::Sqrt => self.one(to, a, |a| {
-                let positive = simd.greater_than_f32s(a, zero);
-                simd.sqrt_f32s(simd.select_f32s(positive, a, zero))
-            }),
-            Op::Less => self.two(to, [a, b], |a, b| truth(simd.less_than_f32s(a, b))),
-            Op::LessEqual => self.two(to, [a, b], |a, b| truth(simd.less_than_or_equal_f32s(a, b))),
-            Op::Equal => self.two(to, [a, b], |a, b| truth(simd.equal_f32s(a, b))),
+            Op::Sqrt => self.one(to, a, |a| simd.sqrt_f32s(greater(simd, a, zero))),
+            Op::Less => self.two(to, [a, b], |a, b| truth(simd, simd.less_than_f32s(a, b))),
+            Op::LessEqual => self.two(to, [a, b], |a, b| truth(simd, simd.less_than_or_equal_f32s(a, b))),
+            Op::Equal => self.two(to, [a, b], |a, b| truth(simd, simd.equal_f32s(a, b))),
             // On the bits of 0 and 1.
             Op::And => self.two(to, [a, b], |a, b| simd.and_f32s(a, b)),
             Op::Or => self.two(to, [a, b], |a, b| simd.or_f32s(a, b)),
@@ -169,16 +165,12 @@ impl<'a, S: Simd, const WIDTH: usize> Rows<'a, S, WIDTH> {
         }
         true
     }
-}
 
-impl<S: Simd, const WIDTH: usize> Rows<'_, S, WIDTH> {
     /// Applies an operation of two operands, one of them the same in all lanes. Does nothing if it is none of those
     /// with [`vol_compiler::tape::takes_scalar`].
     #[inline(always)]
     pub(super) fn apply_scalar(&self, op: Op, to: usize, a: usize, scalar: f32, scalar_first: bool) {
         let simd = self.simd;
-        let (zero, one) = (simd.splat_f32s(0.0), simd.splat_f32s(1.0));
-        let truth = |holds: S::m32s| simd.select_f32s(holds, one, zero);
         let s = simd.splat_f32s(scalar);
         match (op, scalar_first) {
             (Op::Add, _) => self.one(to, a, |a| simd.add_f32s(a, s)),
@@ -187,17 +179,35 @@ impl<S: Simd, const WIDTH: usize> Rows<'_, S, WIDTH> {
             (Op::Sub, true) => self.one(to, a, |a| simd.sub_f32s(s, a)),
             (Op::Div, false) => self.one(to, a, |a| simd.div_f32s(a, s)),
             (Op::Div, true) => self.one(to, a, |a| simd.div_f32s(s, a)),
-            (Op::Min, false) => self.one(to, a, |a| simd.select_f32s(simd.less_than_f32s(a, s), a, s)),
-            (Op::Min, true) => self.one(to, a, |a| simd.select_f32s(simd.less_than_f32s(s, a), s, a)),
-            (Op::Max, false) => self.one(to, a, |a| simd.select_f32s(simd.greater_than_f32s(a, s), a, s)),
-            (Op::Max, true) => self.one(to, a, |a| simd.select_f32s(simd.greater_than_f32s(s, a), s, a)),
-            (Op::Less, false) => self.one(to, a, |a| truth(simd.less_than_f32s(a, s))),
-            (Op::Less, true) => self.one(to, a, |a| truth(simd.less_than_f32s(s, a))),
-            (Op::LessEqual, false) => self.one(to, a, |a| truth(simd.less_than_or_equal_f32s(a, s))),
-            (Op::LessEqual, true) => self.one(to, a, |a| truth(simd.less_than_or_equal_f32s(s, a))),
+            (Op::Min, false) => self.one(to, a, |a| lesser(simd, a, s)),
+            (Op::Min, true) => self.one(to, a, |a| lesser(simd, s, a)),
+            (Op::Max, false) => self.one(to, a, |a| greater(simd, a, s)),
+            (Op::Max, true) => self.one(to, a, |a| greater(simd, s, a)),
+            (Op::Less, false) => self.one(to, a, |a| truth(simd, simd.less_than_f32s(a, s))),
+            (Op::Less, true) => self.one(to, a, |a| truth(simd, simd.less_than_f32s(s, a))),
+            (Op::LessEqual, false) => self.one(to, a, |a| truth(simd, simd.less_than_or_equal_f32s(a, s))),
+            (Op::LessEqual, true) => self.one(to, a, |a| truth(simd, simd.less_than_or_equal_f32s(s, a))),
             _ => {}
         }
     }
+}
+
+/// [`crate::math::fun::lesser`] in each lane.
+#[inline(always)]
+fn lesser<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+    simd.select_f32s(simd.less_than_f32s(a, b), a, b)
+}
+
+/// [`crate::math::fun::greater`] in each lane.
+#[inline(always)]
+fn greater<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+    simd.select_f32s(simd.greater_than_f32s(a, b), a, b)
+}
+
+/// 1 in each lane where something holds, else 0.
+#[inline(always)]
+fn truth<S: Simd>(simd: S, holds: S::m32s) -> S::f32s {
+    simd.select_f32s(holds, simd.splat_f32s(1.0), simd.splat_f32s(0.0))
 }
 
 /// [`crate::math::fun::floor`] in each lane.

@@ -17,6 +17,7 @@
 mod bounds;
 mod outline;
 
+use super::LANES;
 use crate::isa::Isa;
 use bounds::{Choice, Eight, choices};
 use outline::{Outline, Outlines, Room, spine};
@@ -42,7 +43,9 @@ pub(crate) fn most_bytes(module: &Module, frame: &Frame, threads: usize) -> usiz
     // Results are at most eight an instruction, and nearly always one.
     let step = size_of::<TapeOp>() + 16 + 2 * size_of::<Choice>();
     let register = size_of::<Eight>() + 16;
-    for_cells(instructions) + instructions * (step + 2 * threads * register)
+    // A tape that is made for one batch, and its registers.
+    let batch = size_of::<TapeOp>() + LANES * size_of::<f32>();
+    for_cells(instructions) + instructions * (step + threads * (2 * register + batch))
 }
 
 /// Most bytes of the cells of functions with so many instructions together.
@@ -187,9 +190,12 @@ impl LocalTapes {
 
     /// Makes a function's octree, one cell at first, if it has choices.
     fn add(&mut self, module: &Module, id: FunctionId, place: Place) {
+        if self.roots[id.index()].is_some() {
+            return;
+        }
         let tape = Tape::with_own_registers(&module.functions[id.index()]);
         let choices = tape.ops.iter().filter(|step| is_choice(step)).count();
-        if choices >= FEW_CHOICES && self.roots[id.index()].is_none() {
+        if choices >= FEW_CHOICES {
             let cell = Cell::new(Arc::new(Outline::whole(&tape)), 0, 0);
             self.roots[id.index()] =
                 Some(Root { place, spine: spine(&tape), tape, cell, rooms: Mutex::default() });

@@ -18,7 +18,7 @@
 
 use super::camera::{FAR, Ray, slab};
 use super::fields::{Fields, Points};
-use super::scene::{Integrator, Solid, Stride};
+use super::scene::{Integrator, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
 use super::surface::{EPSILON, MAX_STEPS, Met};
@@ -168,21 +168,14 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// The solids whose boxes are within cones, with the parts of the rays where they are.
     fn met_by_cones(&self, cones: &[Cone<F::Real>]) -> Vec<Met<F::Real>> {
-        let span = |cone: &Cone<F::Real>, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
-            let ray = &cone.shadow.ray;
+        self.met(cones.len(), |cone, lo, hi| {
+            let Cone { shadow: ShadowRay { ray, length: end, .. }, slope } = &cones[cone];
             let below = sub(lo, ray.origin).map(Real::abs);
             let above = sub(hi, ray.origin).map(Real::abs);
             let farthest = length([0, 1, 2].map(|axis| below[axis].max(above[axis])));
-            let width = wide(cone.slope) * farthest.min(cone.shadow.length);
+            let width = wide(*slope) * farthest.min(*end);
             slab(ray, lo.map(|x| x - width), hi.map(|x| x + width)).loosened()
-        };
-        let found = self.scene.solids_where(cones.len(), |i, lo, hi| span(&cones[i], lo, hi).is_some());
-        let met = |solid: usize| {
-            let Solid { lo, hi, .. } = self.scene.solids[solid];
-            let spans = cones.iter().map(|cone| span(cone, lo, hi)).collect();
-            Met { solid, side: F::Real::ONE, spans }
-        };
-        found.into_iter().map(met).collect()
+        })
     }
 
     /// Looks around from every feeler.

@@ -160,11 +160,20 @@ impl<'a, F: Fields> Integrator<'a, F> {
     /// The solids whose boxes rays meet, with the parts of the rays in them, a little longer than rounding can
     /// make them.
     pub(crate) fn met_from_outside(&self, rays: &[Ray<F::Real>]) -> Vec<Met<F::Real>> {
-        let span = |ray: &Ray<F::Real>, lo, hi| slab(ray, lo, hi).loosened();
-        let found = self.scene.solids_where(rays.len(), |ray, lo, hi| span(&rays[ray], lo, hi).is_some());
+        self.met(rays.len(), |ray, lo, hi| slab(&rays[ray], lo, hi).loosened())
+    }
+
+    /// The solids that some of `count` rays meet, where `span` is the part of a ray that belongs to a box: of a larger
+    /// box at least as much.
+    pub(super) fn met(
+        &self,
+        count: usize,
+        span: impl Fn(usize, Vec3<F::Real>, Vec3<F::Real>) -> Span<F::Real>,
+    ) -> Vec<Met<F::Real>> {
+        let found = self.scene.solids_where(count, |ray, lo, hi| span(ray, lo, hi).is_some());
         let met = |solid: usize| {
             let Solid { lo, hi, .. } = self.scene.solids[solid];
-            let spans = rays.iter().map(|ray| span(ray, lo, hi)).collect();
+            let spans = (0..count).map(|ray| span(ray, lo, hi)).collect();
             Met { solid, side: F::Real::ONE, spans }
         };
         found.into_iter().map(met).collect()

@@ -71,18 +71,10 @@ pub(super) fn choices(
                 isa.run::<Enclose>((tape, steps.clone(), places, uniforms, known, &mut choices));
             }
             Part::Same { to, from } => known[to.index()] = known[from.index()],
-            Part::Scalar { to, scalar } => known[to.index()] = point(*scalar, uniforms),
+            Part::Scalar { to, scalar } => known[to.index()] = Eight::point(scalar.value(uniforms)),
         }
     }
     choices
-}
-
-#[inline(always)]
-fn point(scalar: Scalar, uniforms: &[f32]) -> Eight {
-    match scalar {
-        Scalar::Number(number) => Eight::point(number),
-        Scalar::Uniform(index) => Eight::point(uniforms[index as usize]),
-    }
 }
 
 kernel! {
@@ -116,7 +108,7 @@ kernel! {
                     }
                 }
                 TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
-                    let value = point(scalar, uniforms);
+                    let value = Eight::point(scalar.value(uniforms));
                     let arg_value = known[arg.index()];
                     let (mut x, mut operands) = ([arg_value, value, value], [Side::Register(arg), Side::Scalar(scalar)]);
                     if scalar_first {

@@ -65,7 +65,7 @@ pub(super) struct Outline {
 }
 
 /// Some steps, or what a step that is left out would give to those that read it.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) enum Part {
     Steps(Range<u32>),
     Same { to: Register, from: Register },
@@ -155,9 +155,20 @@ pub(super) struct Outlines<'a> {
 /// What matters in some boxes.
 enum Kept {
     /// A step: where it is computed, and what it is elsewhere.
-    Step { index: u32, computed: u8, sides: Option<[(Side, u8); 2]> },
-    /// A part of the outline around that is no step.
-    Other(Part),
+    Step {
+        index: u32,
+        computed: u8,
+        sides: Option<[(Side, u8); 2]>,
+    },
+    /// What the outline around says of steps that are left out.
+    Same {
+        to: Register,
+        from: Register,
+    },
+    Scalar {
+        to: Register,
+        scalar: Scalar,
+    },
 }
 
 impl<'a> Outlines<'a> {
@@ -186,14 +197,14 @@ impl<'a> Outlines<'a> {
                     let read = room.read[to.index()];
                     room.read[from.index()] |= read;
                     if read != 0 {
-                        all.kept.push(Kept::Other(part.clone()));
+                        all.kept.push(Kept::Same { to: *to, from: *from });
                     }
                 }
-                Part::Scalar { to, .. } => {
+                Part::Scalar { to, scalar } => {
                     let read = room.read[to.index()];
                     all.count(read);
                     if read != 0 {
-                        all.kept.push(Kept::Other(part.clone()));
+                        all.kept.push(Kept::Scalar { to: *to, scalar: *scalar });
                     }
                 }
             }
@@ -242,14 +253,13 @@ impl<'a> Outlines<'a> {
         for kept in &self.kept {
             // Which register this one is the same as, if not itself.
             let (to, other) = match kept {
-                Kept::Other(Part::Same { to, from }) => (to.index()..to.index() + 1, Some(*from)),
-                Kept::Other(part @ Part::Scalar { to, .. }) => {
+                Kept::Same { to, from } => (to.index()..to.index() + 1, Some(*from)),
+                Kept::Scalar { to, scalar } => {
                     if is_here(read[to.index()]) {
-                        add(part.clone());
+                        add(Part::Scalar { to: *to, scalar: *scalar });
                     }
                     (to.index()..to.index() + 1, None)
                 }
-                Kept::Other(Part::Steps(_)) => continue,
                 Kept::Step { index, computed, sides } => {
                     let to = written(self.tape, &self.tape.ops[*index as usize]);
                     let taken = sides.iter().flatten().find(|(_, boxes)| is_here(*boxes));

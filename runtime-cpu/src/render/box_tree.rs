@@ -201,11 +201,11 @@ mod tests {
     fn any_finds_each_box_once_and_in_order() {
         let all = boxes(250);
         let tree = BoxTree::new(all.clone());
-        let rays: Vec<_> = rays().skip(20).step_by(5).take(20).collect();
+        let rays: Vec<_> = rays().collect();
         let meets = |ray: usize, lo, hi| slab(&rays[ray], lo, hi).is_some();
         let met = |&box_: &usize| (0..rays.len()).any(|ray| meets(ray, all[box_][0], all[box_][1]));
         let expected: Vec<usize> = (0..all.len()).filter(met).collect();
-        assert!(expected.len() > 7 && expected.len() < 200, "{}", expected.len());
+        assert!(expected.len() > 7 && expected.len() < 250, "{}", expected.len());
         assert_eq!(tree.any(rays.len(), meets), expected);
     }
 

@@ -32,20 +32,21 @@ use vol_compiler::tape::{Tape, TapeOp};
 use vol_compiler::wgsl::render::padded;
 
 /// Most bytes of the cells of all functions of a frame.
-const MOST_BYTES: usize = 768 << 20;
+const MOST_BYTES: usize = 576 << 20;
 
 /// As many for each instruction of those functions, if that is less.
 const BYTES_PER_INSTRUCTION: usize = 32 << 10;
 
 /// Most bytes that all this takes, with `threads` that divide cells.
 pub(crate) fn most_bytes(module: &Module, frame: &Frame, threads: usize) -> usize {
-    let instructions: usize = candidates(module, frame).map(|(_, id)| length(module, id)).sum();
+    let lengths = || candidates(module, frame).map(|(_, id)| length(module, id));
+    let (all, longest) = (lengths().sum::<usize>(), lengths().max().unwrap_or(0));
     // Results are at most eight an instruction, and nearly always one.
     let step = size_of::<TapeOp>() + 16 + 2 * size_of::<Choice>();
     let register = size_of::<Eight>() + 16;
     // A tape that is made for one batch, and its registers.
     let batch = size_of::<TapeOp>() + LANES * size_of::<f32>();
-    for_cells(instructions) + instructions * (step + threads * (2 * register + batch))
+    for_cells(all) + all * (step + 2 * threads * register) + longest * threads * batch
 }
 
 /// Most bytes of the cells of functions with so many instructions together.

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
+use vol_compiler::wgsl::Arithmetic;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
 use vol_runtime_cpu::{Method, NoMajorant, PixelCost};
 
@@ -76,16 +77,16 @@ fn counts_of_cpu(stats: &vol_runtime_cpu::Stats) -> Counts {
 }
 
 impl Device {
-    /// Opens what was asked for.
+    /// Opens what was asked for. The CPU's arithmetic is always strict; that of a graphics device costs speed.
     ///
     /// # Errors
     /// A device failure if the GPU was asked for by name and there is none.
-    pub fn open(choice: Choice) -> Result<Self, Failure> {
+    pub fn open(choice: Choice, arithmetic: Arithmetic) -> Result<Self, Failure> {
         match choice {
             Choice::Cpu => Ok(Self::Cpu),
-            Choice::Gpu => Self::open_gpu(),
+            Choice::Gpu => Self::open_gpu(arithmetic),
             // Software Vulkan is slower than the CPU path.
-            Choice::Auto => match Self::open_gpu() {
+            Choice::Auto => match Self::open_gpu(arithmetic) {
                 Ok(device) if device.is_hardware() => Ok(device),
                 Ok(_) | Err(_) => Ok(Self::Cpu),
             },
@@ -93,12 +94,14 @@ impl Device {
     }
 
     #[cfg(feature = "gpu")]
-    fn open_gpu() -> Result<Self, Failure> {
-        vol_runtime_gpu::open().map(|gpu| Self::Gpu(Box::new(gpu))).map_err(|error| gpu_failure(&error))
+    fn open_gpu(arithmetic: Arithmetic) -> Result<Self, Failure> {
+        vol_runtime_gpu::open(arithmetic)
+            .map(|gpu| Self::Gpu(Box::new(gpu)))
+            .map_err(|error| gpu_failure(&error))
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn open_gpu() -> Result<Self, Failure> {
+    fn open_gpu(_: Arithmetic) -> Result<Self, Failure> {
         let failure = Failure::device("this `vol` was built without the GPU backend");
         Err(failure.with_help("use the CPU, or build with `--features gpu`"))
     }

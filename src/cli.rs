@@ -82,6 +82,10 @@ pub(crate) struct Render {
     /// What computes the picture; `auto` takes a hardware GPU if there is one, else the CPU
     #[arg(long, value_enum, default_value_t = Backend::Auto)]
     pub(crate) backend: Backend,
+    /// Have the GPU round each operation by itself, as the CPU does: slower, needs native Vulkan; pictures of both are then equal bit for
+    /// bit on a device whose single operations round correctly
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// Picture size in pixels instead of the scene's
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub(crate) size: Option<Size>,
@@ -206,14 +210,31 @@ pub(crate) struct Explain {
 /// Arguments of `vol compile`.
 #[derive(Debug, Args)]
 pub(crate) struct Compile {
-    /// The scene script
-    pub(crate) scene: PathBuf,
+    /// Scene, params and moment: of a module what the reflection says of its data, of a library all there is.
+    #[command(flatten)]
+    pub(crate) scene: Scene,
     /// The shader language
     #[arg(long, value_enum)]
     pub(crate) target: Target,
+    /// A complete module with bindings and entry points, or functions of points and rays with the moment baked in
+    /// [default: module, for Shadertoy library]
+    #[arg(long = "as", value_enum, value_name = "FORM")]
+    pub(crate) form: Option<ExportForm>,
+    /// What all names of a library start with
+    #[arg(long, default_value = "vol", value_parser = values::prefix)]
+    pub(crate) prefix: String,
+    /// Picture size in pixels instead of the scene's
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    pub(crate) size: Option<Size>,
+    /// Error allowed from sampling media, for the distance between samples
+    #[arg(long, value_name = "E", default_value_t = 0.01, value_parser = values::max_error)]
+    pub(crate) max_error: f32,
     /// Where to write it [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// Also write what a caller must know, as JSON: bindings and their contents, params, conventions, test vectors
+    #[arg(long, value_name = "FILE")]
+    pub(crate) reflect: Option<PathBuf>,
 }
 
 /// Arguments of `vol query`.
@@ -232,6 +253,10 @@ pub(crate) struct Query {
     /// What evaluates the field; the reference computes in f64 and rounds to nine digits
     #[arg(long, value_enum, default_value_t = QueryBackend::Reference)]
     pub(crate) backend: QueryBackend,
+    /// Have the GPU round each operation by itself, as the CPU does: slower, needs native Vulkan; pictures of both are then equal bit for
+    /// bit on a device whose single operations round correctly
+    #[arg(long)]
+    pub(crate) strict: bool,
 }
 
 /// Arguments of `vol diff`.
@@ -246,6 +271,10 @@ pub(crate) struct Diff {
     /// Size of the compared pictures [default: the scene's, at most 256 pixels wide and high]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub(crate) size: Option<Size>,
+    /// Have the GPU round each operation by itself, as the CPU does: slower, needs native Vulkan; pictures of both are then equal bit for
+    /// bit on a device whose single operations round correctly
+    #[arg(long)]
+    pub(crate) strict: bool,
 }
 
 /// Arguments of `vol stress`.
@@ -376,4 +405,16 @@ pub(crate) enum MessageFormat {
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Target {
     Wgsl,
+    Glsl,
+    Spirv,
+    Hlsl,
+    Msl,
+    Shadertoy,
+}
+
+/// What `vol compile` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExportForm {
+    Module,
+    Library,
 }

@@ -31,6 +31,7 @@ use vol::session::{Moment, Session};
 use vol_compiler::frame::Frame;
 use vol_compiler::lints;
 use vol_compiler::skip::Skips;
+use vol_compiler::wgsl::Arithmetic;
 use vol_language::diag::{self, Diagnostic};
 use vol_language::source::Sources;
 
@@ -140,6 +141,11 @@ fn catch_interrupts() -> Result<(), Failure> {
         }
     };
     ctrlc::set_handler(handler).map_err(|error| Failure::usage(format!("cannot catch interrupts: {error}")))
+}
+
+/// How a graphics device is to compute.
+fn arithmetic(strict: bool) -> Arithmetic {
+    if strict { Arithmetic::Strict } else { Arithmetic::Free }
 }
 
 /// [`Failure::Interrupted`] once Ctrl-C was pressed.

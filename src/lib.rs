@@ -16,5 +16,6 @@ pub mod explain;
 pub mod failure;
 pub mod output;
 pub mod profile;
+pub mod reflect;
 pub mod session;
 pub mod stress;

@@ -100,7 +100,7 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// Words of one piece in the storage buffer `vol_curves`.
+    /// Words of one piece in the buffer `vol_curves`.
     pub const WORDS: usize = 52;
 
     /// The piece as words, in field order.
@@ -159,7 +159,7 @@ pub struct CurveTable {
 }
 
 impl CurveTable {
-    /// All pieces as words of the storage buffer `vol_curves`, piece `i` at word `i * Piece::WORDS`.
+    /// All pieces as words of the buffer `vol_curves`, piece `i` at word `i * Piece::WORDS`.
     pub fn words(&self) -> Vec<f32> {
         self.pieces.iter().flat_map(Piece::words).collect()
     }

@@ -12,6 +12,8 @@
 pub mod curve;
 pub mod dropped;
 pub mod error_bound;
+pub mod export;
+
 pub mod frame;
 pub mod ir;
 pub mod library;

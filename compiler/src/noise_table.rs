@@ -32,8 +32,11 @@ pub const PERMUTATION: [u8; 256] = [
     222, 114,  67,  29,  24,  72, 243, 141, 128, 195,  78,  66, 215,  61, 156, 180,
 ];
 
-/// The permutation as the words of the storage buffer `vol_permutation` that the shaders read.
-pub fn permutation_words() -> [u32; 256] {
+/// Words of [`permutation_words`].
+pub const WORDS: usize = PERMUTATION.len();
+
+/// The permutation as the words of the buffer `vol_permutation` that the shaders read.
+pub fn permutation_words() -> [u32; WORDS] {
     PERMUTATION.map(u32::from)
 }
 

@@ -6,13 +6,13 @@
 //! |---|---|
 //! | bindings | [`layout`], with the words that the host puts into the buffers |
 //! | prelude: `fun.wgsl`, `noise.wgsl` and its folder, `curve.wgsl`, `feet.wgsl` | kept as files, included where called |
-//! | `fn vol_f0(x0: f32, …)`, one per IR function | [`expr`] |
+//! | `fn vol_f0_name(x0: f32, …)`, one per IR function | [`expr`] |
 //! | an entry point | [`evaluation_module`], [`render`] |
 //!
 //! ```text
 //! fn distance:ball(3) {              // distance:ball
-//!   %0 = input 0                     fn vol_f0(x0: f32, x1: f32, x2: f32) -> f32 {
-//!   %1 = uniform 4                     let v1: f32 = vol_uniforms[4];
+//!   %0 = input 0                     fn vol_f0_distance_ball(x0: f32, x1: f32, x2: f32) -> f32 {
+//!   %1 = uniform 4                     let v1: f32 = vol_uniforms[1].x;
 //!   %2 = mul %0 %1            ──►      let v2: f32 = (x0 * v1);
 //!   return %2                          return v2;
 //! }                                  }
@@ -25,17 +25,30 @@
 
 mod expr;
 pub mod layout;
-mod names;
+pub mod names;
 pub mod render;
+mod spirv;
 
+use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module};
+use crate::program::Program;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
+use vol_language::source::Span;
 
-pub use layout::{curve_words, permutation_words, uniform_words};
+use layout::SceneRows;
+pub use layout::{Space, scene_words};
+pub use spirv::{Arithmetic, Spirv, spirv};
 
 /// Threads in a workgroup of [`evaluation_module`].
 pub const EVALUATION_GROUP: u32 = 64;
+
+/// Bindings of [`evaluation_module`] after those of the scene.
+const EVALUATION_BINDINGS: &str = "\
+@group(0) @binding(3) var<storage, read> vol_input: array<f32>;
+@group(0) @binding(4) var<storage, read_write> vol_output: array<f32>;
+
+";
 
 /// Prelude files, those that others call first.
 const PRELUDE: [&str; 8] = [
@@ -64,14 +77,49 @@ pub enum WgslError {
         /// What naga says.
         message: String,
     },
+    /// It cannot be said in another language.
+    #[error("the shader cannot be translated to {language}: {message}")]
+    Translate {
+        /// The other language.
+        language: &'static str,
+        /// What naga says.
+        message: String,
+    },
 }
 
-/// Bindings 0 to 2, the prelude and all functions of a module: what an entry point is put under.
-/// `fun.wgsl` is there in any case, for the entry point; it binds `vol_input` and `vol_output`.
-#[must_use]
-pub fn functions(module: &Module) -> String {
-    let all: Vec<usize> = (0..module.functions.len()).collect();
-    chosen(module, &all, "vol_exp2(")
+/// A shader text and how its inputs are bound.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shader {
+    /// WGSL that naga has accepted.
+    pub text: String,
+    /// What kind of buffer each input is, by binding; the output, a storage buffer that is written, comes after them.
+    pub inputs: Vec<Space>,
+}
+
+/// The prelude and all functions of a program: what an entry point is put under. `fun.wgsl` is there in any case, for the
+/// entry point.
+fn functions(program: &Program, rows: &SceneRows<'_>, notes: Option<&Notes<'_>>) -> String {
+    let all: Vec<usize> = (0..program.module.functions.len()).collect();
+    definitions(&program.module, rows, &all, "vol_exp2(", notes)
+}
+
+/// What a text says about where its lines come from.
+pub struct Notes<'a> {
+    origins: &'a [Origins],
+    line: &'a dyn Fn(Span) -> Option<String>,
+}
+
+impl<'a> Notes<'a> {
+    /// `line` words the line of a place, without an end of line.
+    pub fn new(program: &'a Program, line: &'a dyn Fn(Span) -> Option<String>) -> Self {
+        Self { origins: &program.origins, line }
+    }
+
+    /// A comment for each instruction of function `index`.
+    fn of(&self, index: usize, function: &Function) -> Vec<Option<String>> {
+        let places = self.origins.get(index).map_or_else(Vec::new, |origins| origins.places(function));
+        places.into_iter().map(|place| Some(names::comment(&(self.line)(place?)?))).collect()
+    }
 }
 
 /// A shader that evaluates one function at many points.
@@ -83,11 +131,17 @@ pub fn functions(module: &Module) -> String {
 /// # Errors
 ///
 /// [`WgslError`] if naga does not accept the text.
-pub fn evaluation_module(module: &Module, function: FunctionId) -> Result<String, WgslError> {
+pub fn evaluation_module(program: &Program, function: FunctionId) -> Result<Shader, WgslError> {
+    evaluation(&program.module, &SceneRows::of(program), function)
+}
+
+fn evaluation(module: &Module, rows: &SceneRows<'_>, function: FunctionId) -> Result<Shader, WgslError> {
     let entry = evaluation_entry(function, module.function(function));
-    let text = format!("{}\n{}{entry}", chosen(module, &[function.index()], ""), layout::ENTRY_BINDINGS);
+    let functions = definitions(module, rows, &[function.index()], "", None);
+    let text = format!("{}{EVALUATION_BINDINGS}{functions}\n{entry}", declarations(rows));
     validate(&text)?;
-    Ok(text)
+    let inputs = rows.all().iter().map(layout::Row::space).chain([Space::Storage]).collect();
+    Ok(Shader { text, inputs })
 }
 
 /// Asks naga about a text.
@@ -119,18 +173,28 @@ fn prelude(text: &str) -> String {
     parts.join("\n")
 }
 
-/// Bindings, prelude with what `user` calls, output structures and text of the functions at `indices`.
-fn chosen(module: &Module, indices: &[usize], user: &str) -> String {
-    let curve_table = layout::curve_table(module);
+/// Bindings of a scene's numbers.
+fn declarations(rows: &SceneRows<'_>) -> String {
+    rows.all().iter().map(layout::Row::declaration).collect()
+}
+
+/// Prelude with what `user` calls, output structures and text of the functions at `indices`.
+fn definitions(
+    module: &Module,
+    rows: &SceneRows<'_>,
+    indices: &[usize],
+    user: &str,
+    notes: Option<&Notes<'_>>,
+) -> String {
     let mut body = String::new();
     let arities: BTreeSet<usize> = indices.iter().map(|&i| module.functions[i].outputs.len()).collect();
     for arity in arities {
         body.push_str(&names::output_structure(arity));
     }
     for &i in indices {
-        body.push_str(&expr::function(i, &module.functions[i], curve_table));
+        body.push_str(&expr::function(i, &module.functions[i], rows, notes));
     }
-    format!("{}\n{}\n{body}", layout::SCENE_BINDINGS, prelude(&format!("{body}{user}")))
+    format!("{}\n{body}", prelude(&format!("{body}{user}")))
 }
 
 fn evaluation_entry(id: FunctionId, function: &Function) -> String {
@@ -143,8 +207,8 @@ fn evaluation_entry(id: FunctionId, function: &Function) -> String {
            if (index >= bitcast<u32>(vol_input[0])) {{ return; }}\n  \
            let source: u32 = 1u + (index * {inputs}u);\n  \
            let sink: u32 = index * {outputs}u;\n  \
-           let result = vol_f{}({});\n",
-        id.0,
+           let result = {}({});\n",
+        names::function(id.index(), &function.name),
         arguments.join(", "),
     );
     for i in 0..outputs {
@@ -165,13 +229,18 @@ mod tests {
         Module { functions, ..text::parse_module(frame).expect("well-formed text") }
     }
 
+    /// Of two curves.
+    fn rows(module: &Module) -> SceneRows<'static> {
+        SceneRows::new(module, 2, 8)
+    }
+
     #[test]
     fn generated_functions_are_accepted() {
         for seed in 0..150 {
             let outputs = seed as u32 % 7;
             let shape = random::Shape { outputs, operations: 40, ..random::Shape::default() };
             let module = module(vec![random::function(seed, &shape)]);
-            if let Err(error) = evaluation_module(&module, FunctionId(0)) {
+            if let Err(error) = evaluation(&module, &rows(&module), FunctionId(0)) {
                 panic!("{error}\n{}", text::print_function(&module.functions[0]));
             }
         }
@@ -181,13 +250,23 @@ mod tests {
     fn one_module_holds_many_functions() {
         let shapes = (0..20).map(|i| random::Shape { outputs: i % 11, ..random::Shape::default() });
         let functions = shapes.enumerate().map(|(i, shape)| random::function(i as u64, &shape)).collect();
-        assert_eq!(validate(&super::functions(&module(functions))), Ok(()));
+        let module = module(functions);
+        let all: Vec<usize> = (0..module.functions.len()).collect();
+        assert_eq!(
+            validate(&format!(
+                "{}{}",
+                declarations(&rows(&module)),
+                definitions(&module, &rows(&module), &all, "", None)
+            )),
+            Ok(())
+        );
     }
 
     #[test]
     fn long_functions_are_accepted() {
         let shape = random::Shape { operations: 3000, ..random::Shape::default() };
-        assert!(evaluation_module(&module(vec![random::function(9, &shape)]), FunctionId(0)).is_ok());
+        let module = module(vec![random::function(9, &shape)]);
+        assert!(evaluation(&module, &rows(&module), FunctionId(0)).is_ok());
     }
 
     #[test]
@@ -195,7 +274,7 @@ mod tests {
         let with = |line: &str| {
             let body = format!("fn f(1) {{\n%0 = input 0\n{line}\nreturn %0\n}}");
             let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
-            evaluation_module(&module, FunctionId(0)).expect("naga accepts it")
+            evaluation(&module, &rows(&module), FunctionId(0)).expect("naga accepts it").text
         };
         // In order: functions, noise, its four rooms, curves.
         let found = |text: &str| PRELUDE.map(|part| u8::from(text.contains(part)));
@@ -216,12 +295,12 @@ mod tests {
         let body = "fn bad\u{7}name(2) {\n%0 = input 1\n%1 = constant -0.5\n%2 = uniform 3\n%3 = less %0 %1\n\
             %4 = select %3 %2 %0\nreturn %4 %0\n}";
         let function = text::parse_function(body).expect("well-formed text");
-        let text = expr::function(7, &function, 4);
+        let text = expr::function(7, &function, &rows(&module(Vec::new())), None);
         let mut lines = text.lines();
         assert_eq!(lines.next(), Some("// bad name"));
-        assert_eq!(lines.next(), Some("fn vol_f7(x0: f32, x1: f32) -> vec2f {"));
+        assert_eq!(lines.next(), Some("fn vol_f7_bad_name(x0: f32, x1: f32) -> vec2f {"));
         assert_eq!(lines.next(), Some("  let v1: f32 = (-0.5f);"));
-        assert_eq!(lines.next(), Some("  let v2: f32 = vol_uniforms[3];"));
+        assert_eq!(lines.next(), Some("  let v2: f32 = vol_uniforms[0].w;"));
         assert!(lines.next().is_some_and(|line| line.starts_with("  let v3: bool = ")));
         assert!(lines.next().is_some_and(|line| line.starts_with("  let v4: f32 = ")));
         assert_eq!(lines.next(), Some("  return vec2f(v4, x1);"));
@@ -236,7 +315,7 @@ mod tests {
                  %2 = less %0 %1\nreturn %1 %0 %2\n}}\n%3 = extract %2 1\nreturn %3\n}}"
             );
             let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
-            evaluation_module(&module, FunctionId(0)).expect("naga accepts it")
+            evaluation(&module, &rows(&module), FunctionId(0)).expect("naga accepts it").text
         };
         let (few, many) = (with("8"), with("800"));
         assert_eq!(few.replace("< 8u", "< 800u"), many);

@@ -1,5 +1,7 @@
 //! A check for a driver that computes wrong pictures without a word.
 
+use vol_compiler::wgsl::Space;
+
 use crate::device::Gpu;
 use crate::error::GpuError;
 
@@ -17,7 +19,7 @@ impl Gpu {
     /// As [`Gpu::kernel`] and [`Gpu::read`].
     pub fn loop_budget_ok(&self) -> Result<bool, GpuError> {
         let source = include_str!("shaders/loop_budget.wgsl");
-        let kernel = self.kernel("loop budget", source, "main", 1)?;
+        let kernel = self.kernel("loop budget", source, "main", &[Space::Storage])?;
         let turns = self.upload(&[TURNS])?;
         let last = self.zeroed(1)?;
         self.dispatch(&kernel, &[&turns], &last, [1, 1, 1])?;

@@ -8,8 +8,8 @@
 //!
 //! ```no_run
 //! # fn main() -> Result<(), vol_runtime_gpu::GpuError> {
-//! let gpu = vol_runtime_gpu::open()?;
-//! let kernel = gpu.kernel("double", include_str!("shaders/double.wgsl"), "main", 1)?;
+//! let gpu = vol_runtime_gpu::open(Default::default())?;
+//! let kernel = gpu.kernel("double", include_str!("shaders/double.wgsl"), "main", &[vol_compiler::wgsl::Space::Storage])?;
 //! let input = gpu.upload(&[1, 2, 3])?;
 //! let output = gpu.zeroed(3)?;
 //! gpu.dispatch(&kernel, &[&input], &output, vol_runtime_gpu::groups_for(3, 64)?)?;
@@ -21,7 +21,10 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
+use vol_compiler::wgsl::Arithmetic;
+
 use crate::error::GpuError;
+use crate::passthrough;
 
 /// An opened graphics device.
 ///
@@ -31,6 +34,7 @@ pub struct Gpu {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
+    pub(crate) arithmetic: Arithmetic,
     faults: Arc<Faults>,
     /// Kept alive for as long as its device.
     _instance: wgpu::Instance,
@@ -47,13 +51,13 @@ struct Faults {
 
 /// Opens the best Vulkan device of this machine: a discrete GPU before an integrated one, software last.
 ///
-/// Asks for no optional feature and for WebGPU's default limits only, so that what works here works on any device; buffer sizes alone are
-/// raised to what the device has.
+/// Asks for WebGPU's default limits only, so that what works here works on any device; buffer sizes alone are raised to what the device
+/// has. Strict arithmetic needs one optional feature, that SPIR-V reaches the driver unchanged.
 ///
 /// # Errors
 ///
 /// [`GpuError::NoDevice`] when there is no driver, or when no device can be opened; the reason names each device tried.
-pub fn open() -> Result<Gpu, GpuError> {
+pub fn open(arithmetic: Arithmetic) -> Result<Gpu, GpuError> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,
         // No validation layers, whatever the build profile: the tests and the released program see the same driver.
@@ -64,7 +68,7 @@ pub fn open() -> Result<Gpu, GpuError> {
     adapters.sort_by_key(|adapter| preference(adapter.get_info().device_type));
     let mut refusals = Vec::new();
     for adapter in adapters {
-        match open_adapter(&instance, &adapter) {
+        match open_adapter(&instance, &adapter, arithmetic) {
             Ok(gpu) => return Ok(gpu),
             Err(error) => refusals.push(format!("{}: {error}", adapter.get_info().name)),
         }
@@ -84,10 +88,20 @@ fn preference(device_type: wgpu::DeviceType) -> u8 {
     }
 }
 
-fn open_adapter(instance: &wgpu::Instance, adapter: &wgpu::Adapter) -> Result<Gpu, wgpu::RequestDeviceError> {
+fn open_adapter(
+    instance: &wgpu::Instance,
+    adapter: &wgpu::Adapter,
+    arithmetic: Arithmetic,
+) -> Result<Gpu, wgpu::RequestDeviceError> {
     let offered = adapter.limits();
+    let (required_features, experimental_features) = match arithmetic {
+        Arithmetic::Free => Default::default(),
+        Arithmetic::Strict => (wgpu::Features::PASSTHROUGH_SHADERS, passthrough::allowed()),
+    };
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("vol"),
+        required_features,
+        experimental_features,
         required_limits: wgpu::Limits {
             max_buffer_size: offered.max_buffer_size,
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
@@ -98,7 +112,7 @@ fn open_adapter(instance: &wgpu::Instance, adapter: &wgpu::Adapter) -> Result<Gp
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))?;
     let faults = Arc::new(Faults::default());
     faults.watch(&device);
-    Ok(Gpu { device, queue, info: adapter.get_info(), faults, _instance: instance.clone() })
+    Ok(Gpu { device, queue, info: adapter.get_info(), arithmetic, faults, _instance: instance.clone() })
 }
 
 impl Faults {
@@ -125,7 +139,7 @@ fn set_once<T>(slot: &Mutex<Option<T>>, value: T) {
 }
 
 impl Gpu {
-    /// One line for people: the device's name, its driver and what kind of device it is.
+    /// One line for people: the device's name, its driver, what kind of device it is, and whether its arithmetic is strict.
     ///
     /// Example: `llvmpipe (LLVM 15.0.6, 256 bits), llvmpipe Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6), software`.
     pub fn description(&self) -> String {
@@ -137,7 +151,8 @@ impl Gpu {
             wgpu::DeviceType::Cpu => "software",
         };
         let driver = format!("{} {}", self.info.driver, self.info.driver_info);
-        let parts = [self.info.name.as_str(), driver.trim(), kind];
+        let strict = if self.arithmetic == Arithmetic::Strict { "strict" } else { "" };
+        let parts = [self.info.name.as_str(), driver.trim(), kind, strict];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
     }
 

@@ -100,7 +100,10 @@ impl Gpu {
     /// As [`Gpu::upload`].
     pub fn zeroed(&self, words: usize) -> Result<Buffer, GpuError> {
         let bytes = self.checked_bytes(words)?;
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::UNIFORM
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST;
         let size = if words == 0 { EMPTY_BYTES } else { bytes };
         let raw = self.create_buffer("buffer", size, usage)?;
         Ok(Buffer { raw, words })

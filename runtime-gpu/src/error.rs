@@ -74,6 +74,11 @@ impl GpuError {
             }
         }
     }
+
+    /// The error for a text that naga refuses.
+    pub(crate) fn untranslatable(label: &str, error: &vol_compiler::wgsl::WgslError) -> Self {
+        Self::Shader { label: label.to_owned(), message: error.to_string() }
+    }
 }
 
 /// wgpu's description without its fixed heading.

@@ -4,6 +4,7 @@ mod canary;
 mod device;
 mod dispatch;
 mod error;
+mod passthrough;
 mod pipeline;
 mod render;
 

@@ -4,16 +4,19 @@
 //!
 //! | binding | WGSL | contents |
 //! |---|---|---|
-//! | 0 .. `read_buffers` | `var<storage, read>` | the inputs, in the order given to [`Gpu::dispatch`] |
-//! | `read_buffers` | `var<storage, read_write>` | the output, kept from one dispatch to the next |
+//! | 0 .. inputs | `var<uniform>` or `var<storage, read>` | the inputs, in the order given to [`Gpu::dispatch`] |
+//! | inputs | `var<storage, read_write>` | the output, kept from one dispatch to the next |
 //!
-//! WebGPU's default limits leave room for 7 inputs and an output. Pass the number of elements in a buffer rather than asking `arrayLength`:
+//! WebGPU's default limits leave room for 7 inputs in storage and an output. Pass the number of elements in a buffer rather than asking `arrayLength`:
 //! an empty buffer is padded.
 
 use std::time::{Duration, Instant};
 
+use vol_compiler::wgsl::{Arithmetic, Space, WgslError};
+
 use crate::device::Gpu;
 use crate::error::GpuError;
+use crate::passthrough;
 
 /// A compiled compute shader, ready to be dispatched on the [`Gpu`] that made it.
 #[derive(Debug)]
@@ -21,7 +24,7 @@ pub struct Kernel {
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) layout: wgpu::BindGroupLayout,
     label: String,
-    read_buffers: u32,
+    inputs: usize,
     compile_time: Duration,
 }
 
@@ -32,8 +35,8 @@ impl Kernel {
     }
 
     /// How many input buffers each dispatch takes.
-    pub fn read_buffers(&self) -> u32 {
-        self.read_buffers
+    pub fn inputs(&self) -> usize {
+        self.inputs
     }
 
     /// How long parsing, validating and creating the pipeline took.
@@ -50,34 +53,41 @@ impl Gpu {
     /// # Errors
     ///
     /// [`GpuError::Shader`] when the text or its bindings are refused, [`GpuError::TooLarge`] for more buffers than a kernel may have.
-    pub fn kernel(
-        &self,
-        label: &str,
-        wgsl: &str,
-        entry: &str,
-        read_buffers: u32,
-    ) -> Result<Kernel, GpuError> {
+    pub fn kernel(&self, label: &str, wgsl: &str, entry: &str, inputs: &[Space]) -> Result<Kernel, GpuError> {
         let allowed = self.device.limits().max_storage_buffers_per_shader_stage;
-        if read_buffers >= allowed {
+        let in_storage = inputs.iter().filter(|&&space| space == Space::Storage).count() as u64;
+        if in_storage >= u64::from(allowed) {
             return Err(GpuError::TooLarge {
                 what: format!("the kernel `{label}`"),
-                needed: u64::from(read_buffers) + 1,
+                needed: in_storage + 1,
                 allowed: u64::from(allowed),
-                unit: "buffers",
+                unit: "storage buffers",
             });
         }
         let start = Instant::now();
         let refused = |error: &wgpu::Error| GpuError::from_shader(label, error);
         // The module has scopes of its own: a bad one would only be called "invalid" by the pipeline.
-        let module = self.guarded(refused, || {
-            self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let module = self.guarded(refused, || self.create_module(label, wgsl, entry))?;
+        let module = module.map_err(|error| GpuError::untranslatable(label, &error))?;
+        let (layout, pipeline) =
+            self.guarded(refused, || self.create_pipeline(label, &module, entry, inputs))?;
+        Ok(Kernel {
+            pipeline,
+            layout,
+            label: label.to_owned(),
+            inputs: inputs.len(),
+            compile_time: start.elapsed(),
+        })
+    }
+
+    fn create_module(&self, label: &str, wgsl: &str, entry: &str) -> Result<wgpu::ShaderModule, WgslError> {
+        match self.arithmetic {
+            Arithmetic::Free => Ok(self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(label),
                 source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-            })
-        })?;
-        let (layout, pipeline) =
-            self.guarded(refused, || self.create_pipeline(label, &module, entry, read_buffers))?;
-        Ok(Kernel { pipeline, layout, label: label.to_owned(), read_buffers, compile_time: start.elapsed() })
+            })),
+            Arithmetic::Strict => passthrough::module(&self.device, label, wgsl, entry),
+        }
     }
 
     fn create_pipeline(
@@ -85,10 +95,11 @@ impl Gpu {
         label: &str,
         module: &wgpu::ShaderModule,
         entry: &str,
-        read_buffers: u32,
+        inputs: &[Space],
     ) -> (wgpu::BindGroupLayout, wgpu::ComputePipeline) {
-        let entries: Vec<_> =
-            (0..=read_buffers).map(|binding| storage_entry(binding, binding < read_buffers)).collect();
+        let output = wgpu::BufferBindingType::Storage { read_only: false };
+        let types = inputs.iter().map(|&space| input_type(space)).chain([output]);
+        let entries: Vec<_> = (0..).zip(types).map(|(binding, ty)| buffer_entry(binding, ty)).collect();
         let layout = self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some(label),
             entries: &entries,
@@ -110,15 +121,18 @@ impl Gpu {
     }
 }
 
-fn storage_entry(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
+fn input_type(space: Space) -> wgpu::BufferBindingType {
+    match space {
+        Space::Uniform => wgpu::BufferBindingType::Uniform,
+        Space::Storage => wgpu::BufferBindingType::Storage { read_only: true },
+    }
+}
+
+fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
+        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
         count: None,
     }
 }

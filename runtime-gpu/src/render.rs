@@ -27,9 +27,6 @@ const GROUP_SIDE: u32 = 8;
 /// Invocations of a workgroup of the evaluation kernel.
 const EVALUATION_GROUP: u32 = 64;
 
-/// Buffers that every kernel reads: uniforms, curves, permutation, input.
-const READ_BUFFERS: u32 = 4;
-
 /// A program ready to be rendered on one device.
 #[derive(Debug)]
 pub struct Renderer {
@@ -62,8 +59,8 @@ impl Renderer {
         if let Some(kernel) = kernel.get() {
             return Ok(kernel);
         }
-        let text = wgsl::render::render_module(program, quadrature).map_err(refused)?;
-        let compiled = gpu.kernel("render", &text, "render", READ_BUFFERS)?;
+        let shader = wgsl::render::render_module(program, quadrature).map_err(refused)?;
+        let compiled = gpu.kernel("render", &shader.text, "render", &shader.inputs)?;
         Ok(kernel.get_or_init(|| compiled))
     }
 
@@ -83,10 +80,10 @@ impl Renderer {
         let [width, height] = job.size;
         let kernel = self.kernel(gpu, program, job.quadrature)?;
         let words = |tile, budget| wgsl::render::frame_words(program, frame, job, tile, budget);
-        let scene = Shared::upload(gpu, frame)?;
-        let mut input = words([0; 4], 0);
-        input.extend(wgsl::render::grid_words(frame, input.len()));
-        let input = gpu.upload(&input)?;
+        let scene = upload(gpu, program, frame)?;
+        let header = gpu.upload(&words([0; 4], 0))?;
+        let input = gpu.upload(&wgsl::render::input_words(frame))?;
+        let inputs: Vec<&Buffer> = scene.iter().chain([&header, &input]).collect();
         let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
         let most = job.sampling.most;
         let mut done = 0;
@@ -104,8 +101,8 @@ impl Renderer {
                 }
                 let started = Instant::now();
                 budget = budget.min(most - taken);
-                gpu.write(&input, &words(tile, budget))?;
-                gpu.dispatch(kernel, &scene.with(&input), &output, groups)?;
+                gpu.write(&header, &words(tile, budget))?;
+                gpu.dispatch(kernel, &inputs, &output, groups)?;
                 gpu.wait()?;
                 taken += budget;
                 budget = next_budget(budget, started.elapsed());
@@ -148,8 +145,8 @@ pub fn evaluate(
     function: FunctionId,
     inputs: &[f32],
 ) -> Result<Vec<f32>, GpuError> {
-    let text = wgsl::evaluation_module(&program.module, function).map_err(refused)?;
-    let kernel = gpu.kernel("evaluate", &text, "evaluate", READ_BUFFERS)?;
+    let shader = wgsl::evaluation_module(program, function).map_err(refused)?;
+    let kernel = gpu.kernel("evaluate", &shader.text, "evaluate", &shader.inputs)?;
     let signature = program.module.function(function);
     let points = inputs.len() / (signature.inputs as usize).max(1);
     let count = u32::try_from(points).map_err(|_| GpuError::TooLarge {
@@ -160,36 +157,21 @@ pub fn evaluate(
     })?;
     let mut words = vec![count];
     words.extend(inputs.iter().map(|value| value.to_bits()));
-    let scene = Shared::upload(gpu, frame)?;
+    let scene = upload(gpu, program, frame)?;
     let input = gpu.upload(&words)?;
+    let inputs: Vec<&Buffer> = scene.iter().chain([&input]).collect();
     let output = gpu.zeroed(points * signature.outputs.len())?;
-    gpu.dispatch(&kernel, &scene.with(&input), &output, groups_for(count, EVALUATION_GROUP)?)?;
+    gpu.dispatch(&kernel, &inputs, &output, groups_for(count, EVALUATION_GROUP)?)?;
     gpu.read_f32(&output)
 }
 
 fn refused(error: wgsl::WgslError) -> GpuError {
-    GpuError::Shader { label: "scene".to_owned(), message: error.to_string() }
+    GpuError::untranslatable("scene", &error)
 }
 
 /// The buffers of a frame that do not change from tile to tile.
-struct Shared {
-    uniforms: Buffer,
-    curves: Buffer,
-    permutation: Buffer,
-}
-
-impl Shared {
-    fn upload(gpu: &Gpu, frame: &Frame) -> Result<Self, GpuError> {
-        Ok(Self {
-            uniforms: gpu.upload(&wgsl::uniform_words(frame))?,
-            curves: gpu.upload(&wgsl::curve_words(frame))?,
-            permutation: gpu.upload(&wgsl::permutation_words())?,
-        })
-    }
-
-    fn with<'a>(&'a self, input: &'a Buffer) -> [&'a Buffer; READ_BUFFERS as usize] {
-        [&self.uniforms, &self.curves, &self.permutation, input]
-    }
+fn upload(gpu: &Gpu, program: &Program, frame: &Frame) -> Result<Vec<Buffer>, GpuError> {
+    wgsl::scene_words(program, frame).iter().map(|words| gpu.upload(words)).collect()
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use vol::failure::Failure;
 use vol::output::{atomic, png};
 use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
 use vol_compiler::program::{Extent, Program};
+use vol_compiler::wgsl::Arithmetic;
 use vol_runtime_cpu::{Method, TubeBounds};
 
 use super::table::print_table;
@@ -64,11 +65,11 @@ pub(super) fn run(arguments: &cli::Bench) -> Result<(), Failure> {
 /// The backends to measure; `both` goes without a GPU where there is none.
 fn devices(backend: BenchBackend) -> Result<Vec<Device>, Failure> {
     Ok(match backend {
-        BenchBackend::Cpu => vec![Device::open(Choice::Cpu)?],
-        BenchBackend::Gpu => vec![Device::open(Choice::Gpu)?],
+        BenchBackend::Cpu => vec![Device::open(Choice::Cpu, Arithmetic::Free)?],
+        BenchBackend::Gpu => vec![Device::open(Choice::Gpu, Arithmetic::Free)?],
         BenchBackend::Both => {
-            let mut devices = vec![Device::open(Choice::Cpu)?];
-            match Device::open(Choice::Gpu) {
+            let mut devices = vec![Device::open(Choice::Cpu, Arithmetic::Free)?];
+            match Device::open(Choice::Gpu, Arithmetic::Free) {
                 Ok(gpu) => devices.push(gpu),
                 Err(Failure::Device(message)) => super::print_message("note: without the GPU", &message),
                 Err(failure) => return Err(failure),

@@ -4,30 +4,115 @@ use std::io::{self, Write as _};
 
 use vol::failure::Failure;
 use vol::output::atomic;
-use vol_compiler::frame::Quadrature;
-use vol_compiler::skip::Skips;
-use vol_compiler::wgsl;
+use vol::reflect;
+use vol_compiler::export::{self, ExportError, Form, Language, Source};
+use vol_compiler::frame::{Frame, Job};
+use vol_compiler::wgsl::Notes;
+use vol_language::source::{Sources, Span};
 
-use crate::cli;
+use super::Prepared;
+use super::values::Size;
+use crate::cli::{self, ExportForm, Target};
 
 pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
-    if let Some(path) = &arguments.output {
+    for path in arguments.output.iter().chain(&arguments.reflect) {
         atomic::probe(path)?;
     }
-    let session = super::load(&arguments.scene, Skips::ALL)?;
-    let text = match arguments.target {
-        cli::Target::Wgsl => wgsl::render::render_module(&session.program, Quadrature::Midpoint),
+    let (language, form) = (language(arguments.target), form(arguments));
+    let prepared = Prepared::new(&arguments.scene)?;
+    let (frame, job) = moment(&prepared, arguments)?;
+    let session = &prepared.session;
+    let line = |span: Span| line_of(&session.sources, span);
+    let source = Source {
+        program: &session.program,
+        frame: &frame,
+        job: &job,
+        notes: &Notes::new(&session.program, &line),
+        title: &title(&prepared, &frame, form),
+        prefix: &arguments.prefix,
     };
-    let text = text.map_err(|error| {
-        let text = format!("cannot translate `{}`: {error}", arguments.scene.display());
-        Failure::content(text).with_help("this is a mistake of vol itself; please report it with the scene")
-    })?;
+    let bytes = export::export(&source, language, form).map_err(|error| failure(&error, arguments))?;
+    if let Some(path) = &arguments.reflect {
+        let text = reflect::json(&source, language, form, prepared.moment.time, &prepared.params);
+        atomic::write(path, |out| out.write_all(text.as_bytes()))?;
+    }
     match &arguments.output {
-        Some(path) => atomic::write(path, |out| out.write_all(text.as_bytes())),
+        Some(path) => atomic::write(path, |out| out.write_all(&bytes)),
         None => {
             let mut out = io::stdout().lock();
-            let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+            let written = out.write_all(&bytes).and_then(|()| out.flush());
             written.map_err(|error| Failure::stdout(&error))
+        }
+    }
+}
+
+fn language(target: Target) -> Language {
+    match target {
+        Target::Wgsl => Language::Wgsl,
+        Target::Glsl => Language::Glsl,
+        Target::Spirv => Language::Spirv,
+        Target::Hlsl => Language::Hlsl,
+        Target::Msl => Language::Msl,
+        Target::Shadertoy => Language::Shadertoy,
+    }
+}
+
+fn form(arguments: &cli::Compile) -> Form {
+    match (arguments.form, arguments.target) {
+        (Some(ExportForm::Library), _) | (None, Target::Shadertoy) => Form::Library,
+        (Some(ExportForm::Module), _) | (None, _) => Form::Module,
+    }
+}
+
+/// The frame and how it is sampled; depths towards lights are marched, since grids of them are as large as pictures.
+fn moment(prepared: &Prepared, arguments: &cli::Compile) -> Result<(Frame, Job), Failure> {
+    let program = &prepared.session.program;
+    let size = arguments.size.map_or(program.render.size, |Size(size)| size);
+    let mut frame = prepared.frame(size)?;
+    let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
+    let choice = vol_runtime_cpu::choose(program, &mut frame, size, sampling, arguments.max_error);
+    frame.light_grids.clear();
+    Ok((frame, choice.job))
+}
+
+/// `tornado.vol:9: density: q => …`
+fn line_of(sources: &Sources, span: Span) -> Option<String> {
+    let (file, span) = sources.locate(span);
+    let start = file.text.floor_char_boundary(span.start as usize);
+    let number = file.text[..start].matches('\n').count() + 1;
+    let text = file.text.lines().nth(number - 1)?.trim();
+    Some(format!("{}:{number}: {text}", base(&file.name)))
+}
+
+/// A shader that is handed on says nothing of where its scene lay.
+fn base(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name)
+}
+
+/// What a text says of itself.
+fn title(prepared: &Prepared, frame: &Frame, form: Form) -> Vec<String> {
+    let name = base(&prepared.session.sources.root().name);
+    let mut lines = vec![format!("{name}, translated by vol {}", env!("CARGO_PKG_VERSION"))];
+    if form == Form::Library {
+        lines
+            .push(format!("The scene at {} s with the params it was translated with.", prepared.moment.time));
+        lines.push("To be called:".to_owned());
+        for entry in export::entries(&prepared.session.program, frame) {
+            lines.push(format!("  {}{}: {}", entry.name, entry.signature, entry.meaning));
+        }
+    }
+    lines
+}
+
+fn failure(error: &ExportError, arguments: &cli::Compile) -> Failure {
+    match error {
+        ExportError::NoSuchForm(reason) => {
+            Failure::usage((*reason).to_owned()).with_help("take another `--as`, or another `--target`")
+        }
+        ExportError::Shader(error) => {
+            let text = format!("cannot translate `{}`: {error}", arguments.scene.scene.display());
+            Failure::content(text)
+                .with_help("this is a mistake of vol itself; please report it with the scene")
         }
     }
 }

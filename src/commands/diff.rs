@@ -30,8 +30,9 @@ const MAX_ERROR: f32 = 1e-2;
 pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
     super::catch_interrupts()?;
     let prepared = Prepared::new(&arguments.scene)?;
-    let cpu = Device::open(Choice::Cpu)?;
-    let gpu = Device::open(Choice::Gpu)?;
+    let arithmetic = super::arithmetic(arguments.strict);
+    let cpu = Device::open(Choice::Cpu, arithmetic)?;
+    let gpu = Device::open(Choice::Gpu, arithmetic)?;
     let program = &prepared.session.program;
     let size = arguments.size.map_or_else(|| at_most(program.render.size, LONGEST_SIDE), |Size(size)| size);
     let frame = prepared.frame(size)?;

@@ -20,10 +20,11 @@ pub(super) fn run(arguments: &cli::Query) -> Result<(), Failure> {
     let prepared = Prepared::new(&arguments.scene)?;
     let function = prepared.session.field(&arguments.field)?.function;
     let frame = prepared.frame(prepared.session.program.render.size)?;
+    let arithmetic = super::arithmetic(arguments.strict);
     let device = match arguments.backend {
         QueryBackend::Reference => None,
-        QueryBackend::Cpu => Some(Device::open(Choice::Cpu)?),
-        QueryBackend::Gpu => Some(Device::open(Choice::Gpu)?),
+        QueryBackend::Cpu => Some(Device::open(Choice::Cpu, arithmetic)?),
+        QueryBackend::Gpu => Some(Device::open(Choice::Gpu, arithmetic)?),
     };
     let points = read_points(&arguments.at)?;
     let outputs = prepared.session.program.module.function(function).outputs.len();

@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
     }
     let prepared = Prepared::new(&arguments.scene)?;
     prepared.show_suspicions()?;
-    let device = Device::open(match arguments.backend {
+    let choice = match arguments.backend {
         cli::Backend::Cpu => Choice::Cpu,
         cli::Backend::Gpu => Choice::Gpu,
         // The references have no twin for the GPU.
@@ -38,7 +38,8 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
         // Nor have costs.
         cli::Backend::Auto if arguments.aov.is_some() => Choice::Cpu,
         cli::Backend::Auto => Choice::Auto,
-    })?;
+    };
+    let device = Device::open(choice, super::arithmetic(arguments.strict))?;
     let mut stats = new_stats(arguments, &prepared, &device);
     let reference =
         arguments.reference.as_deref().map(|path| read_reference(path, stats.size)).transpose()?;

@@ -6,6 +6,7 @@ use serde::Serialize;
 use vol::backend::{Choice, Device};
 use vol::failure::Failure;
 use vol::stress::{self, Config, Report, Row};
+use vol_compiler::wgsl::Arithmetic;
 use vol_language::diag::{self, Diagnostic};
 
 use super::Prepared;
@@ -18,8 +19,8 @@ pub(super) fn run(arguments: &cli::Stress) -> Result<(), Failure> {
     let (moments, mut messages) = stress::moments(program, &prepared.params, prepared.moment.time);
     let device = match arguments.backend {
         Backend::Cpu => Device::Cpu,
-        Backend::Gpu => Device::open(Choice::Gpu)?,
-        Backend::Auto => Device::open(Choice::Auto)?,
+        Backend::Gpu => Device::open(Choice::Gpu, Arithmetic::Free)?,
+        Backend::Auto => Device::open(Choice::Auto, Arithmetic::Free)?,
     };
     let mut devices = vec![&Device::Cpu];
     if !matches!(device, Device::Cpu) {

@@ -108,6 +108,19 @@ pub(crate) fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
+/// What names may start with in every shader language: a lower-case letter, then letters and digits.
+pub(crate) fn prefix(text: &str) -> Result<String, String> {
+    let fits = text.starts_with(|c: char| c.is_ascii_lowercase())
+        && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit())
+        && !text.starts_with("gl");
+    if fits && text.len() <= 32 {
+        Ok(text.to_owned())
+    } else {
+        Err("must be a lower-case letter and at most 31 more letters or digits, and not begin with `gl`"
+            .to_owned())
+    }
+}
+
 /// A number from 0 to below 1.
 pub(crate) fn adaptive(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {

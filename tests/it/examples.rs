@@ -38,17 +38,11 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(trial);
         #[cfg(feature = "gpu")]
         {
-            let is_slow = SLOW.contains(&name.as_str());
-            let trial =
-                crate::gpu_device::gpu_trial(&format!("examples::{name}_agrees_with_the_cpu"), move |gpu| {
-                    let program = compile_file(&path)?;
-                    agrees(gpu, &program, Quadrature::Midpoint)?;
-                    if CORRECTED.contains(&name.as_str()) {
-                        agrees(gpu, &program, Quadrature::Corrected)?;
-                    }
-                    Ok(())
-                });
-            trials.push(if is_slow { crate::gpu_device::slow(trial) } else { trial });
+            let name = format!("examples::{name}_agrees_with_the_cpu");
+            trials.push(crate::gpu_device::gpu_trial(&name, move |gpu| {
+                let program = compile_file(&path)?;
+                quadratures(&program).iter().try_for_each(|&quadrature| agrees(gpu, &program, quadrature))
+            }));
         }
     }
     trials
@@ -102,15 +96,6 @@ fn quadratures(program: &Program) -> &'static [Quadrature] {
     let all = &[Quadrature::Midpoint, Quadrature::Corrected];
     if program.media.is_empty() { &all[..1] } else { all }
 }
-
-/// Examples with tubes beside the tornado, which is drawn always.
-#[cfg(feature = "gpu")]
-const SLOW: [&str; 2] = ["galaxy", "solar_flare"];
-
-/// Examples that are drawn with the corrected form on the GPU, too: each form is a shader of its own, and software
-/// Vulkan takes long for one.
-#[cfg(feature = "gpu")]
-const CORRECTED: [&str; 2] = ["cloud_ball", "port_media"];
 
 /// The picture of the GPU against that of the CPU.
 #[cfg(feature = "gpu")]

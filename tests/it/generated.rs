@@ -5,6 +5,7 @@ use crate::differential::{EvaluateField, compare_fields};
 use crate::support::{compile, ensure};
 use libtest_mimic::{Failed, Trial};
 use vol::backend::Device;
+use vol_compiler::program::Program;
 
 /// Scenes on the CPU.
 const SCENES: u64 = 1000;
@@ -65,13 +66,7 @@ fn check_all(scenes: u64, evaluate: &EvaluateField) -> Result<(), Failed> {
 }
 
 fn check(bytes: &[u8], evaluate: &EvaluateField) -> Result<Outcome, Failed> {
-    let program = compile("generated.vol", &vol_generator::scene(bytes));
-    let program = match program {
-        Ok(program) => program,
-        // Numbers that only a frame knows may be out of range.
-        Err(failed) if failed.message().is_some_and(is_of_frame) => return Ok(Outcome::Refused),
-        Err(failed) => return Err(failed),
-    };
+    let Some(program) = compiled(bytes)? else { return Ok(Outcome::Refused) };
     let frame = program.frame(&program.default_params(), 0.7, 2.0, [8, 8]).map_err(|d| d.message)?;
     let (mut points, mut undecided) = (0, 0);
     for (name, report) in compare_fields(&program, &frame, POINTS, evaluate)? {
@@ -80,6 +75,16 @@ fn check(bytes: &[u8], evaluate: &EvaluateField) -> Result<Outcome, Failed> {
         undecided += report.undecided;
     }
     Ok(Outcome::Compared(points, undecided))
+}
+
+/// The program of a generated scene; none if its first frame makes no sense, which a message says.
+pub(crate) fn compiled(bytes: &[u8]) -> Result<Option<Program>, Failed> {
+    match compile("generated.vol", &vol_generator::scene(bytes)) {
+        Ok(program) => Ok(Some(program)),
+        // Numbers that only a frame knows may be out of range.
+        Err(failed) if failed.message().is_some_and(is_of_frame) => Ok(None),
+        Err(failed) => Err(failed),
+    }
 }
 
 /// Whether a message is about a frame: bounds and slopes that are known only then.

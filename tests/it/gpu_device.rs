@@ -7,12 +7,19 @@ use std::sync::OnceLock;
 use std::thread;
 
 use libtest_mimic::{Failed, Trial};
+use vol_compiler::wgsl::{Arithmetic, Space};
 use vol_runtime_gpu::{Gpu, GpuError, groups_for, open};
 
 /// The device that the GPU trials share, or why there is none.
 pub(crate) fn shared() -> Result<&'static Gpu, &'static GpuError> {
     static SHARED: OnceLock<Result<Gpu, GpuError>> = OnceLock::new();
-    SHARED.get_or_init(open).as_ref()
+    SHARED.get_or_init(|| open(Arithmetic::Free)).as_ref()
+}
+
+/// The same with strict arithmetic.
+fn shared_strict() -> Result<&'static Gpu, &'static GpuError> {
+    static SHARED: OnceLock<Result<Gpu, GpuError>> = OnceLock::new();
+    SHARED.get_or_init(|| open(Arithmetic::Strict)).as_ref()
 }
 
 /// A trial named `gpu::<name>` that is handed the shared device, or is ignored where there is none.
@@ -20,12 +27,35 @@ pub(crate) fn gpu_trial(
     name: &str,
     body: impl FnOnce(&'static Gpu) -> Result<(), Failed> + Send + 'static,
 ) -> Trial {
-    let trial = Trial::test(format!("gpu::{name}"), move || match shared() {
+    trial_on(shared(), name, body)
+}
+
+/// A trial named `gpu::<name>` that is handed a device of strict arithmetic whose single operations round correctly: Mesa's software
+/// driver. Ignored on any other.
+pub(crate) fn strict_trial(
+    name: &str,
+    body: impl FnOnce(&'static Gpu) -> Result<(), Failed> + Send + 'static,
+) -> Trial {
+    let trial = trial_on(shared_strict(), name, body);
+    match shared_strict() {
+        Ok(gpu) if !gpu.description().contains("llvmpipe") => {
+            trial.with_ignored_flag(true).with_kind("equal bits are demanded of Mesa's software driver only")
+        }
+        Ok(_) | Err(_) => trial,
+    }
+}
+
+fn trial_on(
+    device: Result<&'static Gpu, &'static GpuError>,
+    name: &str,
+    body: impl FnOnce(&'static Gpu) -> Result<(), Failed> + Send + 'static,
+) -> Trial {
+    let trial = Trial::test(format!("gpu::{name}"), move || match device {
         Ok(gpu) => body(gpu),
         // Reached only with `--ignored` or `--include-ignored`.
         Err(error) => Err(error.into()),
     });
-    match shared() {
+    match device {
         Ok(_) => trial,
         Err(GpuError::NoDevice { reason }) => ignored(trial, reason),
         Err(error) => ignored(trial, &error.to_string()),
@@ -34,14 +64,6 @@ pub(crate) fn gpu_trial(
 
 fn ignored(trial: Trial, reason: &str) -> Trial {
     trial.with_ignored_flag(true).with_kind(format!("no GPU: {reason}"))
-}
-
-/// A trial that is left out unless it is asked for: software Vulkan compiles its shader for minutes.
-pub(crate) fn slow(trial: Trial) -> Trial {
-    if trial.has_ignored_flag() {
-        return trial;
-    }
-    trial.with_ignored_flag(true).with_kind("minutes on software Vulkan: --include-ignored")
 }
 
 /// The trials of this file.
@@ -105,7 +127,7 @@ fn floats_come_back(gpu: &Gpu) -> Result<(), Failed> {
 }
 
 fn dispatches_accumulate(gpu: &Gpu) -> Result<(), Failed> {
-    let kernel = gpu.kernel("add twice", ADD_TWICE, "main", 2)?;
+    let kernel = gpu.kernel("add twice", ADD_TWICE, "main", &[Space::Storage; 2])?;
     check(!kernel.compile_time().is_zero(), "compiling took no time")?;
     let values: Vec<f32> = (0_u16..1000).map(f32::from).collect();
     let count = gpu.upload(&[1000])?;
@@ -126,7 +148,7 @@ fn dispatches_accumulate(gpu: &Gpu) -> Result<(), Failed> {
 }
 
 fn empty_buffers(gpu: &Gpu) -> Result<(), Failed> {
-    let kernel = gpu.kernel("add twice", ADD_TWICE, "main", 2)?;
+    let kernel = gpu.kernel("add twice", ADD_TWICE, "main", &[Space::Storage; 2])?;
     let count = gpu.upload(&[0])?;
     let numbers = gpu.upload(&[])?;
     let sums = gpu.zeroed(0)?;
@@ -138,7 +160,7 @@ fn empty_buffers(gpu: &Gpu) -> Result<(), Failed> {
 }
 
 fn rows_of_groups(gpu: &Gpu) -> Result<(), Failed> {
-    let kernel = gpu.kernel("count up", COUNT_UP, "main", 1)?;
+    let kernel = gpu.kernel("count up", COUNT_UP, "main", &[Space::Storage; 1])?;
     let count = 200_001;
     let groups = groups_for(count, 1)?;
     check(groups[1] > 1, "one row is enough here")?;
@@ -165,7 +187,7 @@ fn bad_shaders_are_errors(gpu: &Gpu) -> Result<(), Failed> {
     let no_entry = "@compute @workgroup_size(1) fn other() {}";
     let large_group = "@compute @workgroup_size(1024) fn main() {}";
     for wgsl in [not_wgsl, type_error, no_entry, large_group] {
-        match gpu.kernel("bad", wgsl, "main", 0) {
+        match gpu.kernel("bad", wgsl, "main", &[Space::Storage; 0]) {
             Err(GpuError::Shader { label, message }) => {
                 check(label == "bad" && !message.is_empty(), "no message")?;
             }
@@ -173,15 +195,15 @@ fn bad_shaders_are_errors(gpu: &Gpu) -> Result<(), Failed> {
         }
     }
     // The place in the text is named, and the binding layout is checked against the text.
-    let located = gpu.kernel("bad", type_error, "main", 0).err();
+    let located = gpu.kernel("bad", type_error, "main", &[Space::Storage; 0]).err();
     let located = located.is_some_and(|error| error.to_string().contains("wgsl:1:"));
     check(located, "no position in the message")?;
-    let bindings = gpu.kernel("bad", ADD_TWICE, "main", 1);
+    let bindings = gpu.kernel("bad", ADD_TWICE, "main", &[Space::Storage; 1]);
     check(matches!(bindings, Err(GpuError::Shader { .. })), "bindings unchecked")
 }
 
 fn misuse_is_an_error(gpu: &Gpu) -> Result<(), Failed> {
-    let kernel = gpu.kernel("count up", COUNT_UP, "main", 1)?;
+    let kernel = gpu.kernel("count up", COUNT_UP, "main", &[Space::Storage; 1])?;
     let input = gpu.upload(&[1])?;
     let output = gpu.zeroed(1)?;
     // Sizes.
@@ -191,7 +213,7 @@ fn misuse_is_an_error(gpu: &Gpu) -> Result<(), Failed> {
     check(matches!(long, Err(GpuError::TooLarge { .. })), "write")?;
     let huge = gpu.zeroed(usize::MAX);
     check(matches!(huge, Err(GpuError::TooLarge { .. })), "buffer")?;
-    let wide = gpu.kernel("count up", COUNT_UP, "main", 8);
+    let wide = gpu.kernel("count up", COUNT_UP, "main", &[Space::Storage; 8]);
     check(matches!(wide, Err(GpuError::TooLarge { .. })), "bindings")?;
     // Buffers that do not fit the kernel: too few, and the same one read and written.
     let missing = gpu.dispatch(&kernel, &[], &output, [1, 1, 1]);
@@ -205,8 +227,8 @@ fn misuse_is_an_error(gpu: &Gpu) -> Result<(), Failed> {
 
 /// On a device of its own: the shared one is still needed.
 fn loss_is_an_error(_: &Gpu) -> Result<(), Failed> {
-    let gpu = open()?;
-    let kernel = gpu.kernel("count up", COUNT_UP, "main", 1)?;
+    let gpu = open(Arithmetic::Free)?;
+    let kernel = gpu.kernel("count up", COUNT_UP, "main", &[Space::Storage; 1])?;
     let input = gpu.upload(&[1])?;
     let output = gpu.zeroed(1)?;
     gpu.dispatch(&kernel, &[&input], &output, [1, 1, 1])?;
@@ -214,7 +236,7 @@ fn loss_is_an_error(_: &Gpu) -> Result<(), Failed> {
     let answers = [
         gpu.upload(&[1]).err(),
         gpu.write(&input, &[1]).err(),
-        gpu.kernel("count up", COUNT_UP, "main", 1).err(),
+        gpu.kernel("count up", COUNT_UP, "main", &[Space::Storage; 1]).err(),
         gpu.dispatch(&kernel, &[&input], &output, [1, 1, 1]).err(),
         gpu.read(&output).err(),
         gpu.wait().err(),

@@ -12,6 +12,7 @@ mod differential;
 mod docs;
 mod examples;
 mod explain;
+mod exports;
 mod fixes;
 mod generated;
 #[cfg(feature = "gpu")]
@@ -36,6 +37,8 @@ mod skips;
 mod solid;
 mod spec;
 mod stress;
+#[cfg(feature = "gpu")]
+mod strict;
 mod support;
 mod surfaces;
 mod tubes;
@@ -55,6 +58,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(docs::trials());
     trials.extend(examples::trials());
     trials.extend(explain::trials());
+    trials.extend(exports::trials());
     trials.extend(fixes::trials());
     trials.extend(generated::trials());
     trials.extend(library::trials());
@@ -79,6 +83,6 @@ fn main() -> std::process::ExitCode {
     trials.extend(tubes::trials());
     trials.extend(ui::trials());
     #[cfg(feature = "gpu")]
-    trials.extend(gpu_device::trials());
+    trials.extend(gpu_device::trials().into_iter().chain(strict::trials()));
     libtest_mimic::run(&arguments, trials).exit_code()
 }

@@ -16,6 +16,7 @@ use vol::backend::Device;
 use vol::stress::{self, Config};
 use vol_compiler::error_bound::{self, Bounded};
 use vol_compiler::ops::{Operation, TABLE};
+use vol_compiler::wgsl::Arithmetic;
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
@@ -76,7 +77,7 @@ struct Row {
 fn gpu() -> Option<&'static Device> {
     static DEVICE: std::sync::OnceLock<Option<Device>> = std::sync::OnceLock::new();
     std::env::var_os("VOL_UPDATE_DOCS")?;
-    DEVICE.get_or_init(|| Device::open(vol::backend::Choice::Gpu).ok()).as_ref()
+    DEVICE.get_or_init(|| Device::open(vol::backend::Choice::Gpu, Arithmetic::Free).ok()).as_ref()
 }
 
 fn tables_are_current() -> Result<(), Failed> {

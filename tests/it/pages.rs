@@ -12,10 +12,6 @@ use vol_compiler::program::Program;
 /// The pages, each with a folder of pictures.
 const PAGES: [&str; 4] = ["shapes", "figures", "tubes", "volumes"];
 
-/// Scenes of this page take software Vulkan more than a minute each to compile; the examples have tubes, too.
-#[cfg(feature = "gpu")]
-const SLOW_PAGE: &str = "tubes_";
-
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = vec![
@@ -33,12 +29,10 @@ pub(crate) fn trials() -> Vec<Trial> {
         trials.push(Trial::test(format!("pages::{name}_agrees_with_the_reference"), reference));
         #[cfg(feature = "gpu")]
         {
-            let is_slow = name.starts_with(SLOW_PAGE);
             let name = format!("pages::{name}_agrees_with_the_cpu");
-            let trial = crate::gpu_device::gpu_trial(&name, move |gpu| {
+            trials.push(crate::gpu_device::gpu_trial(&name, move |gpu| {
                 examples::agrees(gpu, &program(&text)?, Quadrature::Midpoint)
-            });
-            trials.push(if is_slow { crate::gpu_device::slow(trial) } else { trial });
+            }));
         }
     }
     trials

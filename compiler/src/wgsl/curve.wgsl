@@ -1,7 +1,6 @@
 // Closest point on a curve of canonical pieces in f32, the same text as
-// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl` and the
-// storage buffer `vol_curves: array<f32>`; the words of a piece are those of
-// `vol_compiler::curve::Piece`.
+// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl` and
+// `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
 
 const VOL_PIECE_WORDS: u32 = 52u;
 // Below this a divisor counts as it: quotients stay finite.
@@ -48,7 +47,7 @@ fn vol_cross(a: vec3f, b: vec3f) -> vec3f {
 
 // Three words of the curve buffer.
 fn vol_curve_vector(word: u32) -> vec3f {
-    return vec3f(vol_curves[word], vol_curves[word + 1u], vol_curves[word + 2u]);
+    return vec3f(vol_curve_word(word), vol_curve_word(word + 1u), vol_curve_word(word + 2u));
 }
 
 // A point held within +-1e8 units, where no product below overflows.
@@ -109,13 +108,13 @@ fn vol_foot(p: vec3f, word: u32) -> VolFoot {
 fn vol_inner(p: vec3f, word: u32) -> VolInner {
     let b1 = vol_curve_vector(word + 6u);
     let b2 = vol_curve_vector(word + 9u);
-    let vertex = vol_curves[word + 27u];
-    let inv_a3 = vol_curves[word + 28u];
+    let vertex = vol_curve_word(word + 27u);
+    let inv_a3 = vol_curve_word(word + 28u);
     // Coefficients of g = a3 t^3 + 3 a2 t^2 + a1 t + a0.
     let w = vol_from_point(p, word);
-    let a3 = vol_curves[word + 24u];
-    let a2x3 = 3.0 * vol_curves[word + 25u];
-    let a1 = (2.0 * vol_curves[word + 26u]) + vol_dot(w, b2);
+    let a3 = vol_curve_word(word + 24u);
+    let a2x3 = 3.0 * vol_curve_word(word + 25u);
+    let a1 = (2.0 * vol_curve_word(word + 26u)) + vol_dot(w, b2);
     let a0 = vol_dot(w, b1);
     // Move to the larger extremum e, or to the vertex where g has none.
     let slope = (a1 + (a2x3 * vertex)) * inv_a3;
@@ -162,12 +161,12 @@ fn vol_polish_step(t: f32, a3: f32, a2x3: f32, a1: f32, a0: f32, low: f32) -> f3
 
 // Whether `t` is where the curve enters the piece, within 3e-8.
 fn vol_at_first(word: u32, t: f32) -> bool {
-    return (vol_curves[word + 32u] * (t - 0.5)) <= -0.5;
+    return (vol_curve_word(word + 32u) * (t - 0.5)) <= -0.5;
 }
 
 // Whether `t` is where the curve leaves the piece, within 3e-8.
 fn vol_at_last(word: u32, t: f32) -> bool {
-    return (vol_curves[word + 32u] * (t - 0.5)) >= 0.5;
+    return (vol_curve_word(word + 32u) * (t - 0.5)) >= 0.5;
 }
 
 // Closest point of the pieces visited so far.
@@ -182,8 +181,8 @@ struct VolSearch {
 fn vol_visit(before: VolSearch, p: vec3f, word: u32, index: u32) -> VolSearch {
     let found = vol_foot(p, word);
     let leaves = vol_at_last(word, found.t);
-    let defers = leaves & (vol_curves[word + 38u] == 1.0);
-    let redundant = (vol_at_first(word, found.t) & (vol_curves[word + 37u] == 1.0)) & (!before.left_at_last);
+    let defers = leaves & (vol_curve_word(word + 38u) == 1.0);
+    let redundant = (vol_at_first(word, found.t) & (vol_curve_word(word + 37u) == 1.0)) & (!before.left_at_last);
     let wins = ((found.dist_sq < before.dist_sq) & (!defers)) & (!redundant);
     return VolSearch(
         select(before.dist_sq, found.dist_sq, wins),
@@ -195,16 +194,16 @@ fn vol_visit(before: VolSearch, p: vec3f, word: u32, index: u32) -> VolSearch {
 
 // Length of a piece from t = 0 to `t`, scene units; every term is positive.
 fn vol_length_to(word: u32, t: f32) -> f32 {
-    let a3 = vol_curves[word + 24u];
-    let b11 = vol_curves[word + 26u];
-    let q = vol_curves[word + 33u];
+    let a3 = vol_curve_word(word + 24u);
+    let b11 = vol_curve_word(word + 26u);
+    let q = vol_curve_word(word + 33u);
     // Half speed at both ends and its rise.
-    let rate = (a3 * t) + (2.0 * vol_curves[word + 25u]);
+    let rate = (a3 * t) + (2.0 * vol_curve_word(word + 25u));
     let speed0 = sqrt(b11);
     let speed = sqrt((rate * t) + b11);
     let rise = (t * rate) / max(speed + speed0, VOL_TINY);
     // The logarithm: a series for small z, else log2.
-    let z = (q * ((q * t) + rise)) / vol_curves[word + 35u];
+    let z = (q * ((q * t) + rise)) / vol_curve_word(word + 35u);
     let y = z / (2.0 + z);
     let yy = y * y;
     let s3 = 0.14285715 + (yy * 0.11111111);
@@ -214,8 +213,8 @@ fn vol_length_to(word: u32, t: f32) -> f32 {
     let logarithm = vol_log2(1.0 + z) * VOL_LN_2;
     let log_term = select(logarithm, series, z < 0.414);
     // Add the terms.
-    let bent = (t * speed) + (((-vol_curves[word + 27u]) * rise) + (vol_curves[word + 34u] * log_term));
-    return select(bent, (2.0 * speed0) * t, vol_curves[word + 28u] == 0.0);
+    let bent = (t * speed) + (((-vol_curve_word(word + 27u)) * rise) + (vol_curve_word(word + 34u) * log_term));
+    return select(bent, (2.0 * speed0) * t, vol_curve_word(word + 28u) == 0.0);
 }
 
 // Coordinates of `p` about the point `t` of a piece.
@@ -226,15 +225,15 @@ fn vol_describe(p: vec3f, word: u32, t: f32) -> VolCurvePoint {
     let normal = vol_curve_vector(word + 15u);
     let binormal = vol_curve_vector(word + 18u);
     let bend = vol_curve_vector(word + 21u);
-    let t_span = vol_curves[word + 30u];
-    let sense = vol_curves[word + 32u];
-    let curve_length = vol_curves[word + 39u];
+    let t_span = vol_curve_word(word + 30u);
+    let sense = vol_curve_word(word + 32u);
+    let curve_length = vol_curve_word(word + 39u);
     // Offset and half velocity at the foot.
     let r = vol_offset_at(p, word, b1, b2, t);
     let v = b1 + (t * b2);
     let vv = max(vol_dot(v, v), VOL_TINY);
     // Unit tangent along the curve.
-    let is_straight = vol_curves[word + 36u] != 0.0;
+    let is_straight = vol_curve_word(word + 36u) != 0.0;
     let per_speed = sense / sqrt(vv);
     let tangent = select(v * per_speed, t0, is_straight);
     // Coordinates in the carried frame.
@@ -244,16 +243,16 @@ fn vol_describe(p: vec3f, word: u32, t: f32) -> VolCurvePoint {
     let y = (vol_dot(binormal, tangent) * turn) - vol_dot(r, binormal);
     // How far beyond an end of the whole curve; a point has both ends in one place.
     let ahead = -vol_dot(r, tangent);
-    let starts = vol_at_first(word, t) & (vol_curves[word + 37u] == 0.0);
-    let ends = (vol_at_last(word, t) | (t_span == 0.0)) & (vol_curves[word + 38u] == 0.0);
+    let starts = vol_at_first(word, t) & (vol_curve_word(word + 37u) == 0.0);
+    let ends = (vol_at_last(word, t) | (t_span == 0.0)) & (vol_curve_word(word + 38u) == 0.0);
     let behind_first = select(0.0, -ahead, starts);
     let beyond_last = select(0.0, ahead, ends);
     // Stretch of volume by the bend.
     let bent = vol_dot(r, vol_cross(bend, v)) / vv;
     let stretch = 1.0 + (bent / (2.0 * vv));
-    let s = vol_curves[word + 31u] + (sense * vol_length_to(word, t));
+    let s = vol_curve_word(word + 31u) + (sense * vol_length_to(word, t));
     return VolCurvePoint(
-        vol_hold(vol_curves[word + 29u] + (t_span * t), 0.0, 1.0),
+        vol_hold(vol_curve_word(word + 29u) + (t_span * t), 0.0, 1.0),
         vol_hold(s, 0.0, curve_length),
         curve_length,
         x,
@@ -278,16 +277,16 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
     let b2 = vol_curve_vector(word + 9u);
     let t0 = vol_curve_vector(word + 12u);
     let bend = vol_curve_vector(word + 21u);
-    let t_span = vol_curves[word + 30u];
+    let t_span = vol_curve_word(word + 30u);
     // Offset and half velocity at the foot.
     let w = vol_from_point(p, word);
     let r = vol_reach(w, b1, b2, t);
     let v = b1 + (t * b2);
     let vv = max(vol_dot(v, v), VOL_TINY);
     // Unit tangent along the curve.
-    let is_straight = vol_curves[word + 36u] != 0.0;
+    let is_straight = vol_curve_word(word + 36u) != 0.0;
     let speed = sqrt(vv);
-    let per_speed = vol_curves[word + 32u] / speed;
+    let per_speed = vol_curve_word(word + 32u) / speed;
     let tangent = select(v * per_speed, t0, is_straight);
     // Unit offset.
     let distance = sqrt(vol_dot(r, r));

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! %7 = mul %2 %3          let v7: f32 = (v2 * v3);
-//! %8 = closest[1] …       let v8 = vol_closest(vec3f(…), bitcast<u32>(vol_uniforms[6]), …);
+//! %8 = closest[1] …       let v8 = vol_closest(vec3f(…), bitcast<u32>(vol_uniforms[1].z), …);
 //! %9 = extract %8 5       let v9: f32 = v8.distance;
 //! ```
 //!
@@ -25,23 +25,31 @@
 //! }                         v7_go = v7_3; }
 //! ```
 
-use super::names;
+use super::layout::SceneRows;
+use super::{Notes, names};
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::{self, Ty};
 use crate::tape::rounded;
 use std::fmt::Write as _;
 
-/// Text of function `index`; `curve_table` is the word of `vol_uniforms` where the curves start.
-pub(super) fn function(index: usize, function: &Function, curve_table: u32) -> String {
+/// Text of function `index`.
+pub(super) fn function(
+    index: usize,
+    function: &Function,
+    rows: &SceneRows<'_>,
+    notes: Option<&Notes<'_>>,
+) -> String {
     let parameters: Vec<String> = (0..function.inputs).map(|i| format!("x{i}: f32")).collect();
     let mut text = format!(
-        "// {}\nfn vol_f{index}({}) -> {} {{\n",
+        "// {}\nfn {}({}) -> {} {{\n",
         names::comment(&function.name),
+        names::function(index, &function.name),
         parameters.join(", "),
         names::output_type(function.outputs.len()),
     );
     let inputs: Vec<String> = (0..function.inputs).map(|i| format!("x{i}")).collect();
-    let writer = Writer { function, curve_table, inputs, prefix: "v".to_owned(), indent: "  ".to_owned() };
+    let comments = notes.map_or_else(Vec::new, |notes| notes.of(index, function));
+    let writer = Writer { function, rows, comments, inputs, prefix: "v".to_owned(), indent: "  ".to_owned() };
     writer.statements(&mut text);
     let outputs: Vec<String> = function.outputs.iter().map(|&v| writer.name(v)).collect();
     let _ = writeln!(text, "  return {};\n}}\n", names::output_value(&outputs));
@@ -50,7 +58,9 @@ pub(super) fn function(index: usize, function: &Function, curve_table: u32) -> S
 
 struct Writer<'a> {
     function: &'a Function,
-    curve_table: u32,
+    rows: &'a SceneRows<'a>,
+    /// A comment for each instruction, where there is something to say.
+    comments: Vec<Option<String>>,
     /// What the inputs are called.
     inputs: Vec<String>,
     /// What the names of values start with.
@@ -75,7 +85,16 @@ impl Writer<'_> {
     }
 
     fn statements(&self, text: &mut String) {
+        let mut last = None;
         for (i, inst) in self.function.insts.iter().enumerate() {
+            let comment = self.comments.get(i).and_then(Option::as_deref);
+            // Neighbours of one line share its comment; a number stands where it was first written, which may be anywhere.
+            if let (Some(comment), Inst::Apply { .. } | Inst::Loop { .. }) = (comment, inst)
+                && last != Some(comment)
+            {
+                let _ = writeln!(text, "{}// {comment}", self.indent);
+                last = Some(comment);
+            }
             self.statement(text, ValueId(i as u32), inst);
         }
     }
@@ -85,7 +104,7 @@ impl Writer<'_> {
             Inst::Input(_) => return,
             Inst::Constant(number) => names::literal(rounded(number.0)),
             Inst::Boolean(truth) => truth.to_string(),
-            Inst::Uniform(index) => format!("vol_uniforms[{index}]"),
+            Inst::Uniform(index) => self.rows.uniforms.word(u64::from(*index)),
             Inst::Apply { op, data, args } => self.operation(ops::operation(*op), *data, args),
             Inst::Extract(tuple, index) => self.extract(*tuple, *index),
             Inst::Loop { most, body, args } => {
@@ -114,7 +133,7 @@ impl Writer<'_> {
              {indent}for (var {name}_i: u32 = 0u; ({name}_i < {most}u) & {name}_go; {name}_i = {name}_i + 1u) {{",
         );
         let (prefix, indent) = (format!("{name}_"), format!("{indent}  "));
-        let inside = Writer { function: body, curve_table: self.curve_table, inputs, prefix, indent };
+        let inside = Writer { function: body, rows: self.rows, comments: Vec::new(), inputs, prefix, indent };
         inside.statements(text);
         let outputs: Vec<String> = body.outputs.iter().map(|&output| inside.name(output)).collect();
         let (indent, goes_on) = (&inside.indent, &outputs[state]);
@@ -165,14 +184,10 @@ impl Writer<'_> {
     }
 
     fn hole(&self, hole: &str, data: u32, args: &[ValueId]) -> String {
-        let curve_word = |offset: u32| {
-            let word = u64::from(self.curve_table) + 2 * u64::from(data) + u64::from(offset);
-            format!("bitcast<u32>(vol_uniforms[{word}])")
-        };
         match hole {
             "d" => data.to_string(),
-            "first" => curve_word(0),
-            "count" => curve_word(1),
+            "first" => self.rows.curve(data)[0].clone(),
+            "count" => self.rows.curve(data)[1].clone(),
             operand => {
                 let operand = operand.parse::<usize>().ok().and_then(|i| args.get(i));
                 operand.map_or_else(String::new, |&value| self.name(value))

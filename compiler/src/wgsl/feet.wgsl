@@ -23,17 +23,17 @@ fn vol_feet_of(p: vec3f, word: u32, closed: bool) -> vec3f {
     let w_end = vol_end_from_point(p, word);
     let at_start = vol_dot(w, vol_curve_vector(word + 12u));
     let at_end = vol_dot(w_end, vol_curve_vector(word + 46u));
-    let sense = vol_curves[word + 32u];
+    let sense = vol_curve_word(word + 32u);
     let forward = sense > 0.0;
     let entering = select(at_end, at_start, forward);
     let leaving = select(at_start, at_end, forward);
     let before = vol_dot(select(w_end, w, forward), vol_curve_vector(word + 49u));
     // The joint at its start, and the end of the curve.
-    let link_before = vol_curves[word + 37u];
-    let link_after = vol_curves[word + 38u];
+    let link_before = vol_curve_word(word + 37u);
+    let link_after = vol_curve_word(word + 38u);
     let joined_before = (link_before == 1.0) | (closed & (link_before == 0.0));
     let joined_after = (link_after == 1.0) | (closed & (link_after == 0.0));
-    let is_point = vol_curves[word + 30u] == 0.0;
+    let is_point = vol_curve_word(word + 30u) == 0.0;
     let enters = is_point | ((entering >= 0.0) & ((!joined_before) | (before <= 0.0)));
     let leaves = ((!is_point) & (!joined_after)) & (leaving <= 0.0);
     // Inside.
@@ -48,10 +48,10 @@ fn vol_feet_of(p: vec3f, word: u32, closed: bool) -> vec3f {
     );
 }
 
-// Distance of a foot whose parameter may be -1 for none.
+// Distance of a foot; farther than any bound where the parameter is -1, for none.
 fn vol_foot_distance(p: vec3f, word: u32, t: f32) -> f32 {
     let r = vol_offset_at(p, word, vol_curve_vector(word + 6u), vol_curve_vector(word + 9u), max(t, 0.0));
-    return select(sqrt(vol_dot(r, r)), VOL_FAR, t < 0.0);
+    return select(sqrt(vol_dot(r, r)), VOL_LARGEST, t < 0.0);
 }
 
 // The first foot whose number is at least `start` and whose distance is at most `most`. Every point visits

@@ -15,6 +15,19 @@ pub(super) fn literal(number: f32) -> String {
     if number < 0.0 { format!("({number:?}f)") } else { format!("{number:?}f") }
 }
 
+/// What an IR function is called: by its number, since names need not differ, and by its name, for people.
+#[must_use]
+pub fn function(index: usize, name: &str) -> String {
+    format!("vol_f{index}_{}", function_word(name)).trim_end_matches('_').to_owned()
+}
+
+/// A name like `density:cloud` as part of an identifier, never with two underscores in a row, which not all languages allow.
+pub(crate) fn function_word(name: &str) -> String {
+    let plain: String =
+        name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).take(40).collect();
+    plain.split('_').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("_")
+}
+
 /// A name of a function as it may stand in a comment.
 pub(super) fn comment(name: &str) -> String {
     let harmless = |c: char| if c.is_ascii_graphic() || c == ' ' { c } else { ' ' };
@@ -22,7 +35,7 @@ pub(super) fn comment(name: &str) -> String {
 }
 
 /// The type that holds so many outputs.
-pub(super) fn output_type(outputs: usize) -> String {
+pub(crate) fn output_type(outputs: usize) -> String {
     match outputs {
         0 | 1 => "f32".to_owned(),
         2..=4 => format!("vec{outputs}f"),

@@ -1,5 +1,5 @@
 // Noises in f32, the same text as `runtime-cpu/src/math/noise.rs`, where ranges, errors and
-// sources stand. Needs `fun.wgsl` and the storage buffer `vol_permutation: array<u32>` (256 words,
+// sources stand. Needs `fun.wgsl` and `vol_permutation_word(index: u32) -> u32` (256 words,
 // `noise_table::permutation_words`).
 
 // Coordinates are held within +- this, where f32 has a fraction left and the cell is an exact i32.
@@ -75,7 +75,7 @@ fn vol_edge_vector(code: u32) -> vec3f {
 
 // One entry of the published permutation.
 fn vol_permuted(i: i32) -> i32 {
-    return i32(vol_permutation[u32(i & 255i)]);
+    return i32(vol_permutation_word(u32(i & 255i)));
 }
 
 // Gradient code of a cell from the permutation: `P[P[P[x] + y] + z] & 15`.

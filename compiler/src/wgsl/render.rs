@@ -1,12 +1,15 @@
 //! The whole shader of a program, and the numbers of a frame as its input.
 //!
 //! The text depends on the program and the quadrature alone: params, time and switches change only the words
-//! of `vol_input`, so a pipeline is built once per scene, or twice where both quadratures are used. [`render_module`] puts together
+//! of the buffers, so a pipeline is built once per scene, or twice where both quadratures are used. [`render_module`] puts together
 //!
-//! 1. a comment on the bindings and the words of `vol_input`,
-//! 2. the prelude and the program's functions ([`super::functions`]),
+//! 1. a comment on the bindings,
+//! 2. the bindings, the prelude and the program's functions ([`super::functions`]),
 //! 3. constants and functions that tell the integrator what there is (this file),
-//! 4. the integrator, `render.wgsl` and its folder, the twin of `runtime-cpu/src/render`.
+//! 4. the integrator, `render.wgsl` and its folder, the twin of `runtime-cpu/src/render`,
+//! 5. the entry points, `render/pixel.wgsl`, for other programs also `render/paint.wgsl`.
+//!
+//! `vol_frame`, binding 3, holds what every ray may need, [`frame_words`]:
 //!
 //! | word | name | meaning |
 //! |---|---|---|
@@ -24,16 +27,18 @@
 //! | 25 | `AT_TOLERANCE` | error at which a pixel takes no more of them, 0 for as many everywhere |
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
-//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell, number of its cells |
-//! | after them | `AT_LIGHTS` | 11 words per light of the frame: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none) |
-//! | after them | | 6 words per cell: lo xyz, hi xyz; a medium without cells may be anywhere in its box |
-//! | after them | | 27 words per grid, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth |
-//! | after them | | the depths of the grids, each from a multiple of 64 words on: [`grid_words`] |
+//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell in `vol_input`, number of its cells |
+//! | after them | `AT_LIGHTS` | 11 words per light of the program, those of the frame first: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none) |
+//! | after them | `AT_GRIDS` | 27 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth in `vol_input` |
+//!
+//! `vol_input`, binding 4, holds what may be long, [`input_words`]: the cells, 6 words each, lo xyz, hi xyz (a medium without cells may
+//! be anywhere in its box), then the depths of the grids, each from a multiple of 64 words on.
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
-use super::WgslError;
+use super::layout::{self, Row, SceneRows};
+use super::{Notes, Shader, Space, WgslError, names};
 use crate::frame::{Aabb, Counts, Frame, Image, Job, LightGrid, MediumFrame, Pixel, Quadrature, Stride};
 use crate::ir::FunctionId;
 use crate::program::{Lighting, Program};
@@ -58,6 +63,12 @@ const INTEGRATOR: [&str; 16] = [
     include_str!("render/corrected.wgsl"),
     include_str!("render/medium.wgsl"),
 ];
+
+/// Entry point of a compute shader.
+const PIXEL: &str = include_str!("render/pixel.wgsl");
+
+/// Entry points of a vertex and a fragment shader.
+const PAINT: &str = include_str!("render/paint.wgsl");
 
 /// Words before the objects.
 const HEADER_WORDS: usize = 27;
@@ -109,12 +120,13 @@ const HEADER: [(&str, usize); 13] = [
 const BINDINGS: &str = "\
 // A vol scene as a compute shader. Entry point: render, workgroups of 8 x 8 over a rectangle.
 //
-// Bindings, all in group 0, all runtime-sized arrays:
+// Bindings, all in group 0:
 //   0 vol_uniforms     numbers of the frame
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
-//   3 vol_input        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
+//   3 vol_frame        f32: the rectangle, the camera, what is there; see the constants AT_...
+//   4 vol_input        f32: cells around media, depths of the grids of lights
+//   5 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
 //                      evaluations, camera rays; where the pixel is: samples in the mean, bits of
@@ -127,11 +139,129 @@ const BINDINGS: &str = "\
 /// # Errors
 ///
 /// If naga does not accept the text, which is a fault of this crate.
-pub fn render_module(program: &Program, quadrature: Quadrature) -> Result<String, WgslError> {
-    let functions = super::functions(&program.module);
-    let text = format!("{BINDINGS}\n{functions}\n{}\n{}", glue(program, quadrature), INTEGRATOR.join("\n"));
+pub fn render_module(program: &Program, quadrature: Quadrature) -> Result<Shader, WgslError> {
+    let text = module_text(program, quadrature, None, &[PIXEL]);
     super::validate(&text)?;
-    Ok(text)
+    Ok(Shader { text, inputs: spaces(program) })
+}
+
+/// What kind of buffer each input of the shader is, by binding.
+#[must_use]
+pub fn spaces(program: &Program) -> Vec<Space> {
+    let rows = SceneRows::of(program).all().into_iter().chain([frame_row(program), input_row()]);
+    rows.map(|row| row.space()).collect()
+}
+
+/// The same for other programs: with notes about its lines, and a fragment shader beside the compute shader.
+///
+/// # Errors
+///
+/// As [`render_module`].
+pub fn shared_module(
+    program: &Program,
+    quadrature: Quadrature,
+    notes: &Notes<'_>,
+) -> Result<Shader, WgslError> {
+    let text = module_text(program, quadrature, Some(notes), &[PIXEL, PAINT]);
+    super::validate(&text)?;
+    Ok(Shader { text, inputs: spaces(program) })
+}
+
+fn module_text(
+    program: &Program,
+    quadrature: Quadrature,
+    notes: Option<&Notes<'_>>,
+    entries: &[&str],
+) -> String {
+    let rows = SceneRows::of(program);
+    let bindings: String = [frame_row(program), input_row()].iter().map(Row::declaration).collect();
+    let functions = super::functions(program, &rows, notes);
+    [
+        &format!("{BINDINGS}\n{}{bindings}", super::declarations(&rows)),
+        &functions,
+        &glue(program, quadrature),
+        &INTEGRATOR.join("\n"),
+        &entries.join("\n"),
+    ]
+    .map(String::as_str)
+    .join("\n")
+}
+
+/// A program at one moment as functions without bindings and without entry points: what is a buffer elsewhere is a
+/// constant here. It has no statistics.
+///
+/// * `job`: the picture's size and how media are sampled
+/// * `keyword`: what declares the constants. Translated to SPIR-V, a `const` is copied wherever it is read, a `var<private>`
+///   is not; translated to MSL it is the other way round
+pub(crate) fn library_text(
+    program: &Program,
+    frame: &Frame,
+    job: &Job,
+    notes: &Notes<'_>,
+    keyword: &str,
+) -> String {
+    let places = layout::curve_places(frame);
+    let rows = SceneRows::of(program).fixed(&places);
+    let whole = [0, 0, job.size[0], job.size[1]];
+    let mut words = super::scene_words(program, frame);
+    // Whole numbers about curves follow, which the text spells where it needs them.
+    words[0].truncate(program.module.frame.outputs.len());
+    let mut text: String =
+        rows.all().iter().zip(&words).map(|(row, words)| row.constants(words, keyword)).collect();
+    text +=
+        &frame_row(program).constants(&frame_words(program, frame, job, whole, job.sampling.most), keyword);
+    text += &input_row().constants(&input_words(frame), keyword);
+    for part in [
+        &super::functions(program, &rows, Some(notes)),
+        &glue(program, job.quadrature),
+        &INTEGRATOR.join("\n"),
+    ] {
+        text.push('\n');
+        let lines = part.lines().filter(|line| !line.contains("counted_"));
+        lines.for_each(|line| text.extend([line, "\n"]));
+    }
+    text
+}
+
+/// Where things begin in `vol_frame`.
+struct Places {
+    media: usize,
+    lights: usize,
+    grids: usize,
+    end: usize,
+}
+
+impl Places {
+    fn of(program: &Program) -> Self {
+        let media = HEADER_WORDS + OBJECT_WORDS * program.objects.len();
+        let lights = media + MEDIUM_WORDS * program.media.len();
+        let grids = lights + LIGHT_WORDS * program.lights.len();
+        Self { media, lights, grids, end: grids + GRID_WORDS * program.lights.len() }
+    }
+}
+
+/// Names of places in `vol_frame` and their words, as the text knows them.
+#[must_use]
+pub fn places(program: &Program) -> Vec<(&'static str, usize)> {
+    let of = Places::of(program);
+    let records = [("AT_OBJECTS", HEADER_WORDS), ("AT_MEDIA", of.media), ("AT_LIGHTS", of.lights)];
+    HEADER.into_iter().chain(records).chain([("AT_GRIDS", of.grids)]).collect()
+}
+
+/// Loops of the integrator that end by a count, and the most turns of each: no loop is without a bound.
+pub const LOOP_BOUNDS: [(&str, u32, &str); 4] = [
+    ("MAX_STEPS", 2000, "steps of a ray to a surface"),
+    ("MAX_NODES", 16384, "samples of media along a ray"),
+    ("TRIES", 8, "looks ahead for the steepness of a field"),
+    ("PLACE_COUNT", 19, "places of a light with a size"),
+];
+
+fn frame_row(program: &Program) -> Row {
+    Row::new(3, "vol_frame", Places::of(program).end)
+}
+
+fn input_row() -> Row {
+    Row::long(4, "vol_input")
 }
 
 /// Constants and functions that the integrator needs to know a program.
@@ -139,7 +269,7 @@ fn glue(program: &Program, quadrature: Quadrature) -> String {
     let mut text =
         String::from("// ---- this program ------------------------------------------------------------\n\n");
     let (objects, media) = (program.objects.len(), program.media.len());
-    let media_at = HEADER_WORDS + OBJECT_WORDS * objects;
+    let places = Places::of(program);
     let counts = [
         ("OBJECT_COUNT", objects),
         ("MEDIUM_COUNT", media),
@@ -152,8 +282,8 @@ fn glue(program: &Program, quadrature: Quadrature) -> String {
         ("LIGHT_WORDS", LIGHT_WORDS),
         ("PIXEL_WORDS", PIXEL_WORDS),
         ("AT_OBJECTS", HEADER_WORDS),
-        ("AT_MEDIA", media_at),
-        ("AT_LIGHTS", media_at + MEDIUM_WORDS * media),
+        ("AT_MEDIA", places.media),
+        ("AT_LIGHTS", places.lights),
     ];
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
@@ -170,7 +300,7 @@ fn glue(program: &Program, quadrature: Quadrature) -> String {
         text += &format!("const {name}: bool = {value};\n");
     }
     for pick in picks(program) {
-        text += &pick.wgsl();
+        text += &pick.wgsl(program);
     }
     text
 }
@@ -191,7 +321,7 @@ struct Pick<'a> {
 }
 
 impl Pick<'_> {
-    fn wgsl(&self) -> String {
+    fn wgsl(&self, program: &Program) -> String {
         let mut text = format!("\nfn {} {{\n", self.signature);
         for counter in self.counters {
             let _ = writeln!(text, "    {counter} += 1u;");
@@ -199,7 +329,8 @@ impl Pick<'_> {
         text += "    switch index {\n";
         for (index, function) in self.functions.iter().enumerate() {
             let Some(function) = function else { continue };
-            let call = format!("let v = vol_f{}({});", function.0, self.arguments);
+            let name = names::function(function.index(), &program.module.function(*function).name);
+            let call = format!("let v = {name}({});", self.arguments);
             let _ = writeln!(
                 text,
                 "        case {index}u: {{\n            {call}\n            return {};\n        }}",
@@ -320,12 +451,13 @@ fn wider(bounds: &Aabb, by: f32) -> Aabb {
     Aabb { lo: bounds.lo.map(|x| x - by), hi: bounds.hi.map(|x| x + by) }
 }
 
-/// The contents of `vol_input`: a frame, a job, and the part of the picture to render
+/// The contents of `vol_frame`: a frame, a job, and the part of the picture to render
 /// (`[x, y, width, height]` in pixels) with at most `budget` more samples for each of its pixels, laid
-/// out as the module's documentation says. [`grid_words`] follow them.
+/// out as the module's documentation says.
 #[must_use]
 pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], budget: u32) -> Vec<u32> {
-    let mut words = Vec::new();
+    let places = Places::of(program);
+    let mut words = Vec::with_capacity(places.end);
     words.extend(tile.map(|x| x as f32));
     words.extend(job.size.map(|x| x as f32));
     words.extend([job.step, job.shadow_step]);
@@ -343,24 +475,21 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         };
         objects[object.index] = record(state, padded(&object.bounds), [safe_scale]);
     }
+    words.extend(objects.as_flattened());
     let mut media = vec![[0.0; MEDIUM_WORDS]; program.media.len()];
-    let cells_at = words.len() + objects.as_flattened().len() + media.as_flattened().len();
-    let cells_at = cells_at + LIGHT_WORDS * frame.lights.len();
-    let mut cells = Vec::new();
+    let mut cells_at = 0;
     for medium in &frame.media {
         let state = match medium.lighting {
             Lighting::None => 1.0,
             Lighting::Unshadowed => 2.0,
             Lighting::Shadowed => 3.0,
         };
-        let own = padded_cells(medium);
-        let place = [cells_at + cells.len(), own.len()].map(|number| number as f32);
-        media[medium.index] = record(state, padded(&medium.bounds), place);
-        cells.extend(own.iter().flat_map(|cell| [cell.lo, cell.hi].concat()));
+        let cells = padded_cells(medium).len();
+        media[medium.index] = record(state, padded(&medium.bounds), [cells_at as f32, cells as f32]);
+        cells_at += CELL_WORDS * cells;
     }
-    words.extend(objects.as_flattened());
     words.extend(media.as_flattened());
-    let mut grids_at = cells_at + cells.len();
+    let mut grids_at = places.grids;
     for (index, light) in frame.lights.iter().enumerate() {
         words.push(f32::from(u8::from(light.distant)));
         words.extend([light.position, light.color].concat());
@@ -369,13 +498,25 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         words.push(grid as f32);
         grids_at += if grid > 0 { GRID_WORDS } else { 0 };
     }
-    words.extend(cells);
-    let mut depths_at = grids_at.next_multiple_of(GRID_ALIGNMENT);
+    words.resize(places.grids, 0.0);
+    let mut depths_at = cells_at.next_multiple_of(GRID_ALIGNMENT);
     for grid in grids(frame) {
         words.extend(grid_record(grid, depths_at));
         depths_at += grid.depths.len().next_multiple_of(GRID_ALIGNMENT);
     }
-    words.into_iter().map(f32::to_bits).collect()
+    frame_row(program).filled(words.into_iter().map(f32::to_bits).collect())
+}
+
+/// The contents of `vol_input`: cells of media, depths of grids.
+#[must_use]
+pub fn input_words(frame: &Frame) -> Vec<u32> {
+    let cells = frame.media.iter().flat_map(padded_cells).flat_map(|cell| [cell.lo, cell.hi]).flatten();
+    let mut words: Vec<u32> = cells.map(f32::to_bits).collect();
+    for grid in grids(frame) {
+        words.resize(words.len().next_multiple_of(GRID_ALIGNMENT), 0);
+        words.extend(grid.depths.iter().map(|depth| depth.to_bits()));
+    }
+    words
 }
 
 /// The grid of a light.
@@ -399,18 +540,6 @@ fn grid_record(grid: &LightGrid, depths_at: usize) -> [f32; GRID_WORDS] {
     let mut words = [0.0; GRID_WORDS];
     words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
     words
-}
-
-/// What follows `words`, the result of [`frame_words`] for the same frame, in `vol_input`: the depths of
-/// its grids. Nothing for a frame without grids.
-#[must_use]
-pub fn grid_words(frame: &Frame, words: usize) -> Vec<u32> {
-    let mut more = Vec::new();
-    for grid in grids(frame) {
-        more.resize((words + more.len()).next_multiple_of(GRID_ALIGNMENT) - words, 0);
-        more.extend(grid.depths.iter().map(|depth| depth.to_bits()));
-    }
-    more
 }
 
 /// State, box and more numbers of an object or medium; nothing for an empty box.

@@ -1,13 +1,9 @@
 // The integrator: what a picture means. Twin of runtime-cpu/src/render, with the same file names,
-// function names and step comments. One invocation computes samples of
-// one pixel.
+// function names and step comments.
 //
 // Written before this text, per program: how many objects and media there are, the places AT_… of
-// the words of vol_input, and the functions object_… and medium_… that pick the function of one of
-// them. Every value stays finite; skipped parts add exactly 0.
-
-@group(0) @binding(3) var<storage, read> vol_input: array<f32>;
-@group(0) @binding(4) var<storage, read_write> vol_output: array<u32>;
+// the words of vol_frame, vol_frame_word for one of them, and the functions object_… and medium_… that
+// pick the function of one of them. Every value stays finite; skipped parts add exactly 0.
 
 const FAR: f32 = 4.0e6;
 const PARALLEL: f32 = 1e-12;
@@ -28,10 +24,16 @@ const TRIES: u32 = 8u;
 const UNLIT: f32 = 1.0;
 const UNSHADOWED: f32 = 2.0;
 const SHADOWED: f32 = 3.0;
+// Pixels have fewer corners.
+const NO_CORNER: u32 = 4u;
 const ROOT_THIRD: f32 = 0.5773503;
 
 fn word3(at: u32) -> vec3f {
-    return vec3f(vol_input[at], vol_input[at + 1u], vol_input[at + 2u]);
+    return vec3f(vol_frame_word(at), vol_frame_word(at + 1u), vol_frame_word(at + 2u));
+}
+
+fn input3(at: u32) -> vec3f {
+    return vec3f(vol_input_word(at), vol_input_word(at + 1u), vol_input_word(at + 2u));
 }
 
 fn dot3(a: vec3f, b: vec3f) -> f32 {
@@ -95,34 +97,33 @@ var<private> counted_rays: u32;
 var<private> counted_samples: u32;
 var<private> counted_evaluations: u32;
 
-@compute @workgroup_size(8, 8)
-fn render(@builtin(global_invocation_id) id: vec3u) {
-    let tile = vec4u(
-        u32(vol_input[AT_TILE]),
-        u32(vol_input[AT_TILE + 1u]),
-        u32(vol_input[AT_TILE + 2u]),
-        u32(vol_input[AT_TILE + 3u]),
-    );
-    if ((id.x >= tile.z) | (id.y >= tile.w)) {
-        return;
-    }
-    let column = tile.x + id.x;
-    let row = tile.y + id.y;
-    let index = (row * u32(vol_input[AT_SIZE])) + column;
-    let pixel = vec2u(column, row);
-    // Go on with the pixel where the dispatch before stopped.
-    var mean = read_pixel(index);
-    let last = min(mean.count + u32(vol_input[AT_BUDGET]), u32(vol_input[AT_SAMPLES]));
-    while ((mean.count < last) && !is_done(mean)) {
-        mean = add_sample(mean, radiance(sample_ray(pixel, mean.count)));
-        if (is_probed() && (mean.count == FIRST_ROUND)) {
-            for (var corner = 0u; corner < 4u; corner++) {
-                let place = pixel + vec2u(corner % 2u, corner / 2u);
-                mean = add_probe(mean, radiance(camera_ray(vec2f(place))));
-            }
+// Takes samples of a pixel until there are `last` of them, or enough.
+fn sample_pixel(pixel: vec2u, before: Mean, last: u32) -> Mean {
+    var mean = before;
+    // Rays are followed at one place of the text, since drivers write it out at each: for samples, and
+    // for the corners after the first round.
+    var corner = NO_CORNER;
+    while ((corner < NO_CORNER) || ((mean.count < last) && !is_done(mean))) {
+        let is_probe = corner < NO_CORNER;
+        let found = radiance(pixel_ray(pixel, mean.count, corner));
+        if (is_probe) {
+            mean = add_probe(mean, found);
+            corner += 1u;
+        } else {
+            mean = add_sample(mean, found);
+            corner = select(NO_CORNER, 0u, is_probed() && (mean.count == FIRST_ROUND));
         }
     }
-    write_pixel(index, mean);
+    return mean;
+}
+
+// The ray of a sample, or through a corner of the pixel.
+fn pixel_ray(pixel: vec2u, index: u32, corner: u32) -> Ray {
+    let is_probe = corner < NO_CORNER;
+    let aside = select(place_in_pixel(index), vec2f(vec2u(corner % 2u, corner / 2u)), is_probe);
+    var ray = camera_ray(vec2f(pixel) + aside);
+    ray.shift = select(comb_shift(pixel, index), 0.0, is_probe);
+    return ray;
 }
 
 // Follows a camera ray.
@@ -145,42 +146,4 @@ fn radiance(ray: Ray) -> Radiance {
     let color = glow.light + (glow.transmittance * behind);
     let doubt = length3(coarse - color) * ROOT_THIRD;
     return Radiance(color, select(glow.transmittance, vec3f(0.0), contact.hit), depth, doubt);
-}
-
-fn read_pixel(index: u32) -> Mean {
-    let at = PIXEL_WORDS * index;
-    return Mean(
-        vol_output[at + 11u],
-        vec3f(output_float(at), output_float(at + 1u), output_float(at + 2u)),
-        vec3f(output_float(at + 3u), output_float(at + 4u), output_float(at + 5u)),
-        output_float(at + 6u),
-        output_float(at + 12u),
-        output_float(at + 13u),
-        output_float(at + 14u),
-    );
-}
-
-fn output_float(at: u32) -> f32 {
-    return bitcast<f32>(vol_output[at]);
-}
-
-// Counts of dispatches are added up in whole numbers: with many samples they leave the 24 bits of a
-// float.
-fn write_pixel(index: u32, mean: Mean) {
-    let at = PIXEL_WORDS * index;
-    vol_output[at] = bitcast<u32>(mean.color.x);
-    vol_output[at + 1u] = bitcast<u32>(mean.color.y);
-    vol_output[at + 2u] = bitcast<u32>(mean.color.z);
-    vol_output[at + 3u] = bitcast<u32>(mean.transmittance.x);
-    vol_output[at + 4u] = bitcast<u32>(mean.transmittance.y);
-    vol_output[at + 5u] = bitcast<u32>(mean.transmittance.z);
-    vol_output[at + 6u] = bitcast<u32>(mean.depth);
-    vol_output[at + 7u] += counted_rays;
-    vol_output[at + 8u] += counted_samples;
-    vol_output[at + 9u] += counted_evaluations;
-    vol_output[at + 10u] += counted_camera_rays;
-    vol_output[at + 11u] = mean.count;
-    vol_output[at + 12u] = bitcast<u32>(mean.color_spread);
-    vol_output[at + 13u] = bitcast<u32>(mean.transmittance_spread);
-    vol_output[at + 14u] = bitcast<u32>(mean.doubt);
 }

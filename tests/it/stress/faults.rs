@@ -7,6 +7,7 @@ use vol::backend::Device;
 use vol::stress::{self, Config, Moment, Report};
 use vol_compiler::frame::Stride;
 use vol_compiler::program::Program;
+use vol_compiler::wgsl::Arithmetic;
 use vol_language::diag::Diagnostic;
 
 /// The trials of this file.
@@ -178,7 +179,7 @@ fn same_seed_same_report() -> Result<(), Failed> {
 #[cfg(feature = "gpu")]
 fn faults_on_gpu(_: &vol_runtime_gpu::Gpu) -> Result<(), Failed> {
     use vol::backend::Choice;
-    let device = Device::open(Choice::Gpu).map_err(|failure| format!("{failure:?}"))?;
+    let device = Device::open(Choice::Gpu, Arithmetic::Free).map_err(|failure| format!("{failure:?}"))?;
     let scene = |text: &str| -> Result<Report, Failed> {
         let program = compile("scene.vol", text)?;
         let moments = stress::moments(&program, &program.default_params(), 0.0).0;

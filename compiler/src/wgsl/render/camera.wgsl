@@ -23,8 +23,8 @@ fn ray_at(ray: Ray, t: f32) -> vec3f {
 }
 
 fn camera_ray(place: vec2f) -> Ray {
-    let u = ((2.0 * place.x) / vol_input[AT_SIZE]) - 1.0;
-    let v = 1.0 - ((2.0 * place.y) / vol_input[AT_SIZE + 1u]);
+    let u = ((2.0 * place.x) / vol_frame_word(AT_SIZE)) - 1.0;
+    let v = 1.0 - ((2.0 * place.y) / vol_frame_word(AT_SIZE + 1u));
     let sideways = word3(AT_FORWARD) + (word3(AT_RIGHT) * u);
     let toward = sideways + (word3(AT_UP) * v);
     return new_ray(word3(AT_EYE), toward / length3(toward));

@@ -39,7 +39,7 @@ fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> v
     // Node numbers stay where f32 knows them and a half.
     let first = min(max(floor((span.entry / step_size) - offset), 0.0), LAST_NODE);
     let last = min(floor((max(leave, 0.0) / step_size) - offset), LAST_NODE);
-    let none = (span.entry > leave) | (vol_input[at] == 0.0);
+    let none = (span.entry > leave) | (vol_frame_word(at) == 0.0);
     return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
 }
 
@@ -88,13 +88,13 @@ fn wall(ray: Ray, medium: u32, range: vec2i, t: f32, node: i32, step_size: f32, 
 // Whether a point is within a step of a cell of a medium; a medium without cells may be anywhere.
 fn near_cell(medium: u32, point: vec3f, step_size: f32) -> bool {
     let at = medium_word(medium);
-    let count = u32(vol_input[at + 8u]);
+    let count = u32(vol_frame_word(at + 8u));
     let reach = vec3f(1.01 * step_size);
     var near = count == 0u;
-    var cell = u32(vol_input[at + 7u]);
+    var cell = u32(vol_frame_word(at + 7u));
     for (var index = 0u; index < count; index++) {
-        let lo = word3(cell) - reach;
-        let hi = word3(cell + 3u) + reach;
+        let lo = input3(cell) - reach;
+        let hi = input3(cell + 3u) + reach;
         near = near | contains(lo, hi, point);
         cell += CELL_WORDS;
     }

@@ -30,7 +30,7 @@ struct Panels {
 
 fn march_panels(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
-    var comb = new_comb(ray, end, vol_input[AT_STEP]);
+    var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var panels: Panels;
     panels.lit = false;
     // The panel before the first one is nothing: its end is the beginning of the first.
@@ -63,28 +63,25 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
         let own = (*comb).own[medium];
         let between = find_walls(ray, medium, comb, node, t);
         let next = between.next;
-        let at = (AFTER * MEDIUM_SLOTS) + medium;
-        (*panels).interiors[at] = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-        if (next < 0.0) {
-            (*panels).interiors[at] = medium_interior(medium, ray_at(ray, t.y));
-        }
         var masses = vec2f(0.0);
         var ends = vec2u(BEFORE, AFTER);
-        if (has_panel(comb, node, t, own, between)) {
-            var stretch = t;
-            (*panels).walls[medium] = between.walls;
-            for (var wall = 0u; wall < between.count; wall++) {
-                let kind = WALL + wall;
-                let interior = medium_interior(medium, ray_at(ray, between.walls[wall]));
-                (*panels).interiors[(kind * MEDIUM_SLOTS) + medium] = interior;
-                if (wall_ends(own, wall)) {
-                    ends.y = kind;
-                    stretch.y = between.walls[wall];
-                } else {
-                    ends.x = kind;
-                    stretch.x = between.walls[wall];
-                }
+        var stretch = t;
+        (*panels).walls[medium] = between.walls;
+        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
+        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
+            let is_wall = kind >= WALL;
+            let wall = max(kind, WALL) - WALL;
+            let distance = select(t.y, between.walls[wall], is_wall);
+            var interior = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+            if (is_wall || (next < 0.0)) {
+                interior = medium_interior(medium, ray_at(ray, distance));
             }
+            (*panels).interiors[(kind * MEDIUM_SLOTS) + medium] = interior;
+            let is_end = wall_ends(own, wall);
+            ends = select(ends, select(vec2u(kind, ends.y), vec2u(ends.x, kind), is_end), is_wall);
+            stretch = select(stretch, select(vec2f(distance, stretch.y), vec2f(stretch.x, distance), is_end), is_wall);
+        }
+        if (has_panel(comb, node, t, own, between)) {
             let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
             let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
             let open = open_ends(comb, node, t, own, next);

@@ -8,7 +8,7 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
     let lo = word3(grid + 13u);
     let scale = word3(grid + 16u);
     let counts = word3(grid + 19u);
-    let distant = vol_input[grid] != 0.0;
+    let distant = vol_frame_word(grid) != 0.0;
     let off = point - origin;
     let u = dot3(off, word3(grid + 4u));
     let v = dot3(off, word3(grid + 7u));
@@ -24,12 +24,12 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
         return vec3f(0.0);
     }
     // Behind it nothing is added.
-    let channels = u32(vol_input[grid + 25u]);
+    let channels = u32(vol_frame_word(grid + 25u));
     let column = channels * u32(counts.z);
     let x = stencil(place.x, last.x, column * u32(counts.y));
     let y = stencil(place.y, last.y, column);
     let z = stencil(min(place.z, last.z), last.z, channels);
-    let first = u32(vol_input[grid + 26u]);
+    let first = u32(vol_frame_word(grid + 26u));
     let tint = word3(grid + 22u);
     var depth = vec3f(0.0);
     for (var channel = 0u; channel < channels; channel++) {
@@ -46,9 +46,9 @@ fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil, channels: u32) -
     for (var i = 0u; i < four; i++) {
         for (var j = 0u; j < four; j++) {
             let row = (first + x.at[i]) + y.at[j];
-            let ab = (z.weights.x * vol_input[row + z.at.x]) + (z.weights.y * vol_input[row + z.at.y]);
-            let abc = ab + (z.weights.z * vol_input[row + z.at.z]);
-            let column = abc + (z.weights.w * vol_input[row + z.at.w]);
+            let ab = (z.weights.x * vol_input_word(row + z.at.x)) + (z.weights.y * vol_input_word(row + z.at.y));
+            let abc = ab + (z.weights.z * vol_input_word(row + z.at.z));
+            let column = abc + (z.weights.w * vol_input_word(row + z.at.w));
             sum += (x.weights[i] * y.weights[j]) * column;
         }
     }

@@ -31,7 +31,7 @@ fn clear_glow() -> Glow {
 
 fn march_nodes(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
-    var comb = new_comb(ray, end, vol_input[AT_STEP]);
+    var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     for (var node = comb.first - 2; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {

@@ -33,7 +33,7 @@ fn distance_above(
         let at = object_word(solid);
         let lo = word3(at + 1u) - vec3f(height);
         let hi = word3(at + 4u) + vec3f(height);
-        if (contains(lo, hi, point) & (vol_input[at] != 0.0)) {
+        if (contains(lo, hi, point) & (vol_frame_word(at) != 0.0)) {
             distance = min(distance, (*sides)[solid] * object_distance(solid, point));
         }
     }

@@ -2,7 +2,7 @@
 // Twin: runtime-cpu/src/render/penumbra.rs, which says why.
 
 const RIM_COUNT: u32 = 8u;
-const RIM = array<vec2f, 8>(vec2f(1.0, 0.0), vec2f(0.7071068, 0.7071068), vec2f(0.0, 1.0), vec2f(-0.7071068, 0.7071068), vec2f(-1.0, 0.0), vec2f(-0.7071068, -0.7071068), vec2f(0.0, -1.0), vec2f(0.7071068, -0.7071068));
+const RIM = array<vec2f, 8>(vec2f(1.0, 0.0), vec2f(0.70710677, 0.70710677), vec2f(0.0, 1.0), vec2f(-0.70710677, 0.70710677), vec2f(-1.0, 0.0), vec2f(-0.70710677, -0.70710677), vec2f(0.0, -1.0), vec2f(0.70710677, -0.70710677));
 const PLACE_COUNT: u32 = 19u;
 const PLACES = array<vec2f, 19>(vec2f(0.0, 0.0), vec2f(0.4, 0.0), vec2f(0.2, 0.3464102), vec2f(-0.2, 0.3464102), vec2f(-0.4, 0.0), vec2f(-0.2, -0.3464102), vec2f(0.2, -0.3464102), vec2f(0.7727407, 0.2070552), vec2f(0.5656854, 0.5656854), vec2f(0.2070552, 0.7727407), vec2f(-0.2070552, 0.7727407), vec2f(-0.5656854, 0.5656854), vec2f(-0.7727407, 0.2070552), vec2f(-0.7727407, -0.2070552), vec2f(-0.5656854, -0.5656854), vec2f(-0.2070552, -0.7727407), vec2f(0.2070552, -0.7727407), vec2f(0.5656854, -0.5656854), vec2f(0.7727407, -0.2070552));
 const CLEAR: f32 = 2.0;
@@ -17,14 +17,24 @@ struct Around {
 
 // Fraction of a light that no solid hides.
 fn lit_part_of(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
-    let centre = walk(ray, distance, least_step, slope);
-    if (centre >= 1.0) {
-        return 1.0;
-    }
     var ends = RIM;
     var clear: array<f32, RIM_COUNT>;
-    for (var index = 0u; index < RIM_COUNT; index++) {
-        clear[index] = walk(rim(ray, slope, ends[index]), distance, least_step, slope);
+    var centre = 0.0;
+    // The centre, then the rim: walked at one place of the text, since drivers write it out at each.
+    for (var index = 0u; index <= RIM_COUNT; index++) {
+        let end = max(index, 1u) - 1u;
+        var toward = ray;
+        if (index > 0u) {
+            toward = rim(ray, slope, ends[end]);
+        }
+        let found = walk(toward, distance, least_step, slope);
+        if (index > 0u) {
+            clear[end] = found;
+        } else if (found >= 1.0) {
+            return 1.0;
+        } else {
+            centre = found;
+        }
     }
     return lit_part(centre, &clear);
 }
@@ -72,7 +82,7 @@ fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> 
         let farthest = length3(max(abs(lo - ray.origin), abs(hi - ray.origin)));
         let width = (CLEAR * slope) * min(farthest, distance);
         let span = loosened(slab(ray, lo - vec3f(width), hi + vec3f(width)));
-        let there = vol_input[at] != 0.0;
+        let there = vol_frame_word(at) != 0.0;
         spans[solid].entry = select(FAR, span.entry, there);
         spans[solid].leave = select(-FAR, span.leave, there);
     }
@@ -91,7 +101,7 @@ fn around(ray: Ray, spans: ptr<function, array<Span, OBJECT_SLOTS>>, t: f32) -> 
             let value = object_distance(solid, ray_at(ray, t));
             let safe = shorten(solid, ray, t, 0.0, value);
             // A field in units of its own is as far from 0 as its slope there says.
-            let own_units = vol_input[object_word(solid) + 7u] == BY_STEEPNESS;
+            let own_units = vol_frame_word(object_word(solid) + 7u) == BY_STEEPNESS;
             near.distance = min(near.distance, select(value, safe, own_units));
             near.safe = min(near.safe, safe);
         }

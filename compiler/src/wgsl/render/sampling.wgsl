@@ -40,13 +40,6 @@ fn comb_shift(pixel: vec2u, index: u32) -> f32 {
     return (f32((place + 0x80000000u) >> 16u) * (1.0f / 65536.0f)) - 0.5;
 }
 
-// The ray of a sample.
-fn sample_ray(pixel: vec2u, index: u32) -> Ray {
-    var ray = camera_ray(vec2f(pixel) + place_in_pixel(index));
-    ray.shift = comb_shift(pixel, index);
-    return ray;
-}
-
 // Takes one more sample into the mean.
 fn add_sample(old: Mean, sample: Radiance) -> Mean {
     var mean = old;
@@ -83,16 +76,16 @@ fn add_probe(old: Mean, probe: Radiance) -> Mean {
 
 // Whether corners are probed: where there is a test before the last sample.
 fn is_probed() -> bool {
-    return (vol_input[AT_TOLERANCE] > 0.0) && (u32(vol_input[AT_SAMPLES]) > FIRST_ROUND);
+    return (vol_frame_word(AT_TOLERANCE) > 0.0) && (u32(vol_frame_word(AT_SAMPLES)) > FIRST_ROUND);
 }
 
 // Whether the pixel takes no more samples.
 fn is_done(mean: Mean) -> bool {
-    if (mean.count >= u32(vol_input[AT_SAMPLES])) {
+    if (mean.count >= u32(vol_frame_word(AT_SAMPLES))) {
         return true;
     }
     let tested = (mean.count >= FIRST_ROUND) && (((mean.count - FIRST_ROUND) % ROUND) == 0u);
-    let tolerance = vol_input[AT_TOLERANCE];
+    let tolerance = vol_frame_word(AT_TOLERANCE);
     return tested && (tolerance > 0.0) && is_within(mean, tolerance);
 }
 

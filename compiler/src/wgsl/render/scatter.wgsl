@@ -23,7 +23,7 @@ fn place_visibility(lamp: Arriving, point: vec3f, t: f32, scatter: ptr<function,
     var asked = false;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let scatters = any((*scatter)[medium] > vec3f(0.0));
-        asked = asked | (scatters & (vol_input[medium_word(medium)] == SHADOWED));
+        asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
     }
     if (asked & lamp.shadows) {
         return visibility(new_ray(point, lamp.direction), lamp.distance, shadow_bias(t), lamp.grid);
@@ -41,7 +41,7 @@ fn scatter_light(
 ) {
     let angles = turn(lamp.direction, direction);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let lighting = vol_input[medium_word(medium)];
+        let lighting = vol_frame_word(medium_word(medium));
         let part = (*scatter)[medium];
         if (any(part > vec3f(0.0)) & (lighting > UNLIT)) {
             // Add what arrives and is turned towards the eye.

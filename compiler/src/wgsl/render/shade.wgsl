@@ -19,29 +19,29 @@ struct Arriving {
 }
 
 fn light_count() -> u32 {
-    return u32(vol_input[AT_LIGHT_COUNT]);
+    return u32(vol_frame_word(AT_LIGHT_COUNT));
 }
 
 // What a light sends to a point.
 fn arriving(light: u32, point: vec3f) -> Arriving {
     let at = AT_LIGHTS + (LIGHT_WORDS * light);
-    let distant = vol_input[at] != 0.0;
+    let distant = vol_frame_word(at) != 0.0;
     let toward = word3(at + 1u) - point;
     // At the very place of the light the irradiance stays finite.
     let squared = max(dot3(toward, toward), 1e-12);
     let distance = sqrt(squared);
     let direction = select(toward / distance, word3(at + 1u), distant);
     let irradiance = select(word3(at + 4u) / squared, word3(at + 4u), distant);
-    let shadows = vol_input[at + 7u] != 0.0;
-    let size = vol_input[at + 8u];
+    let shadows = vol_frame_word(at + 7u) != 0.0;
+    let size = vol_frame_word(at + 8u);
     let slope = select(min(size / distance, MAX_SPREAD_TANGENT), size, distant);
-    let grid = u32(vol_input[at + 10u]);
+    let grid = u32(vol_frame_word(at + 10u));
     return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid);
 }
 
 // Radiance that leaves a contact towards the eye.
 fn shade(ray: Ray, contact: Contact) -> vec3f {
-    if (vol_input[object_word(contact.solid)] == SHOWS_NORMALS) {
+    if (vol_frame_word(object_word(contact.solid)) == SHOWS_NORMALS) {
         return (contact.normal + vec3f(1.0)) * 0.5;
     }
     let response = object_surface(contact.solid, contact.position);
@@ -54,7 +54,7 @@ fn shade(ray: Ray, contact: Contact) -> vec3f {
         if (cosine > 0.0) {
             var seen = surface_visibility(lamp, contact);
             if (OCCLUDING_LIGHTS) {
-                let reach = vol_input[AT_LIGHTS + (LIGHT_WORDS * light) + 9u];
+                let reach = vol_frame_word(AT_LIGHTS + (LIGHT_WORDS * light) + 9u);
                 if (reach > 0.0) {
                     seen = seen * openness(contact, reach);
                 }
@@ -74,12 +74,7 @@ fn surface_visibility(lamp: Arriving, contact: Contact) -> vec3f {
     let bias = shadow_bias(contact.t);
     let offset = max(bias, 2.0 * contact.residual);
     let origin = contact.position + (contact.normal * offset);
-    if (SOFT_LIGHTS) {
-        if (lamp.slope > 0.0) {
-            return soft_visibility(new_ray(origin, lamp.direction), lamp.distance, bias, lamp.slope, lamp.grid);
-        }
-    }
-    return visibility(new_ray(origin, lamp.direction), lamp.distance, bias, lamp.grid);
+    return soft_visibility(new_ray(origin, lamp.direction), lamp.distance, bias, lamp.slope, lamp.grid);
 }
 
 // Radiance towards the eye per irradiance on a facing plane.

@@ -3,15 +3,24 @@
 
 // Fraction of the light that arrives, per channel.
 fn visibility(ray: Ray, distance: f32, bias: f32, grid: u32) -> vec3f {
-    counted_rays += 1u;
-    let part = select(1.0, 0.0, blocked(ray, distance, 0.25 * bias));
+    return through_media(ray, distance, unblocked(ray, distance, bias), grid);
+}
+
+// Fraction of a light with a slope that arrives, per channel.
+fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
+    var part = 0.0;
+    if (SOFT_LIGHTS && (slope > 0.0)) {
+        part = lit_part_of(ray, distance, 0.25 * bias, slope);
+    } else {
+        part = unblocked(ray, distance, bias);
+    }
     return through_media(ray, distance, part, grid);
 }
 
-// Fraction of a light with a size that arrives, per channel.
-fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
-    let part = lit_part_of(ray, distance, 0.25 * bias, slope);
-    return through_media(ray, distance, part, grid);
+// The part of a light without size that solids let through.
+fn unblocked(ray: Ray, distance: f32, bias: f32) -> f32 {
+    counted_rays += 1u;
+    return select(1.0, 0.0, blocked(ray, distance, 0.25 * bias));
 }
 
 // The part of a light that solids let through, weakened by the media.
@@ -70,7 +79,7 @@ fn optical_depth(ray: Ray, end: f32) -> vec3f {
 }
 
 fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
-    var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
+    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
     for (var node = comb.first - 2; node <= comb.last; node++) {
@@ -99,7 +108,7 @@ fn node_depth(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) ->
 }
 
 fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
-    var comb = new_comb(ray, end, vol_input[AT_SHADOW_STEP]);
+    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
     // Density and extinction of each medium at the node before.
     var before: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
@@ -125,22 +134,28 @@ fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<funct
         let next = between.next;
         var first = (*before)[medium];
         var last = vec4f(0.0);
-        if (next < 0.0) {
-            last = medium_extinction(medium, ray_at(ray, t.y));
-        }
-        (*before)[medium] = last;
-        if (has_panel(comb, node, t, own, between)) {
-            var stretch = t;
-            for (var wall = 0u; wall < between.count; wall++) {
-                let matter = medium_extinction(medium, ray_at(ray, between.walls[wall]));
-                if (wall_ends(own, wall)) {
-                    last = matter;
-                    stretch.y = between.walls[wall];
-                } else {
-                    first = matter;
-                    stretch.x = between.walls[wall];
-                }
+        var stretch = t;
+        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
+        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
+            let is_wall = kind >= WALL;
+            let wall = max(kind, WALL) - WALL;
+            let distance = select(t.y, between.walls[wall], is_wall);
+            var matter = vec4f(0.0);
+            if (is_wall || (next < 0.0)) {
+                matter = medium_extinction(medium, ray_at(ray, distance));
             }
+            if (!is_wall) {
+                (*before)[medium] = matter;
+                last = matter;
+            } else if (wall_ends(own, wall)) {
+                last = matter;
+                stretch.y = distance;
+            } else {
+                first = matter;
+                stretch.x = distance;
+            }
+        }
+        if (has_panel(comb, node, t, own, between)) {
             let open = open_ends(comb, node, t, own, next);
             let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);

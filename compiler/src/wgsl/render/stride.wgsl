@@ -3,7 +3,7 @@
 
 // Makes the value of a solid's field safe to walk; what is inside stays as it is.
 fn shorten(solid: u32, ray: Ray, t: f32, last: f32, value: f32) -> f32 {
-    let scale = vol_input[object_word(solid) + 7u];
+    let scale = vol_frame_word(object_word(solid) + 7u);
     if (scale != BY_STEEPNESS) {
         return scale * value;
     }

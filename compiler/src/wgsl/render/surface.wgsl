@@ -19,7 +19,7 @@ struct Contact {
 }
 
 fn footprint() -> f32 {
-    return (2.0 * length3(word3(AT_UP))) / vol_input[AT_SIZE + 1u];
+    return (2.0 * length3(word3(AT_UP))) / vol_frame_word(AT_SIZE + 1u);
 }
 
 fn remoteness() -> f32 {
@@ -59,7 +59,7 @@ fn find_sides() -> array<f32, OBJECT_SLOTS> {
         let at = object_word(solid);
         let eye = word3(AT_EYE);
         sides[solid] = 1.0;
-        if (contains(word3(at + 1u), word3(at + 4u), eye) & (vol_input[at] != 0.0)) {
+        if (contains(word3(at + 1u), word3(at + 4u), eye) & (vol_frame_word(at) != 0.0)) {
             sides[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
         }
     }
@@ -81,7 +81,7 @@ fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> arr
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let span = loosened(slab(ray, word3(at + 1u), word3(at + 4u)));
-        let there = vol_input[at] != 0.0;
+        let there = vol_frame_word(at) != 0.0;
         spans[solid].entry = select(FAR, span.entry, there);
         let leave = select(span.leave, FAR, (*sides)[solid] < 0.0);
         spans[solid].leave = select(-FAR, leave, there);
@@ -162,13 +162,19 @@ struct Bracket {
 
 // False position between the last two places.
 fn refine(ray: Ray, solid: u32, before: f32, t: f32, side: f32) -> Contact {
-    let outer = side * object_distance(solid, ray_at(ray, before));
-    let inner = side * object_distance(solid, ray_at(ray, t));
-    var bracket = Bracket(vec2f(before, outer), vec2f(t, inner));
-    for (var round = 0u; round < REFINEMENTS; round++) {
-        let between = probe(bracket);
-        let value = side * object_distance(solid, ray_at(ray, between));
-        bracket = narrow(bracket, vec2f(between, value));
+    var bracket = Bracket(vec2f(before, 0.0), vec2f(t, 0.0));
+    // The values at both ends come first: the field is asked at one place of the text, since drivers
+    // write it out at each.
+    for (var round = 0u; round < (2u + REFINEMENTS); round++) {
+        let place = select(select(probe(bracket), t, round == 1u), before, round == 0u);
+        let found = vec2f(place, side * object_distance(solid, ray_at(ray, place)));
+        if (round == 0u) {
+            bracket.outside = found;
+        } else if (round == 1u) {
+            bracket.inside = found;
+        } else {
+            bracket = narrow(bracket, found);
+        }
     }
     let nearer = abs(bracket.outside.y) < abs(bracket.inside.y);
     let best = select(bracket.inside, bracket.outside, nearer);
@@ -178,9 +184,14 @@ fn refine(ray: Ray, solid: u32, before: f32, t: f32, side: f32) -> Contact {
 
 // Gradient where a ray enters a solid: taken a little inside, or outside if it points along the ray.
 fn facing_gradient(ray: Ray, solid: u32, t: f32, side: f32) -> vec3f {
-    let gradient = object_gradient(solid, ray_at(ray, t + rounding(t))) * side;
-    if (dot3(gradient, ray.direction) > 0.0) {
-        return object_gradient(solid, ray_at(ray, t - rounding(t))) * side;
+    var gradient = vec3f(0.0);
+    var aside = rounding(t);
+    for (var round = 0u; round < 2u; round++) {
+        gradient = object_gradient(solid, ray_at(ray, t + aside)) * side;
+        if (!(dot3(gradient, ray.direction) > 0.0)) {
+            break;
+        }
+        aside = -aside;
     }
     return gradient;
 }

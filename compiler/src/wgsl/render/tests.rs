@@ -1,7 +1,8 @@
 use super::*;
 use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Quadrature, Sampling, Stride};
+use crate::ir::FunctionId;
 use crate::ir::text;
-use crate::program::{Camera, Extent, Medium, Object, Render, Slot};
+use crate::program::{Camera, Extent, Light, LightKind, Medium, Object, Render, Slot};
 use crate::skip::Skips;
 use vol_language::source::Span;
 
@@ -47,7 +48,7 @@ fn program(objects: usize, media: usize) -> Program {
         tubes: Vec::new(),
         objects: vec![object; objects],
         media: vec![medium; media],
-        lights: Vec::new(),
+        lights: vec![lamp(); 3],
         camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
         render: Render {
             size: [4, 4],
@@ -61,6 +62,18 @@ fn program(objects: usize, media: usize) -> Program {
         report: Vec::new(),
         origins: Vec::new(),
         skips: Skips::ALL,
+    }
+}
+
+fn lamp() -> Light {
+    Light {
+        name: "sun".to_owned(),
+        kind: LightKind::Distant([NOWHERE; 3]),
+        color: [NOWHERE; 3],
+        shadows: NOWHERE,
+        size: None,
+        occlusion: None,
+        enabled: NOWHERE,
     }
 }
 
@@ -117,7 +130,10 @@ fn modules_are_accepted() {
     for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
         for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
             let text = render_module(&program(objects, media), quadrature);
-            assert!(text.is_ok_and(|text| text.contains("fn render(")), "{objects} objects, {media} media");
+            assert!(
+                text.is_ok_and(|shader| shader.text.contains("fn render(")),
+                "{objects} objects, {media} media"
+            );
         }
     }
 }
@@ -147,10 +163,9 @@ fn words_stand_where_the_shader_looks() {
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
     assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-    let cells = lights + 11;
-    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., cells as f32, 2.0]);
-    assert_eq!(words[lights..cells], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
-    assert_eq!(words[cells..], [0.0; 12], "two cells");
+    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 0.0, 2.0]);
+    assert_eq!(words[lights..lights + 11], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(input_words(&frame(&program)), [0; 12], "two cells");
 }
 
 #[test]
@@ -176,19 +191,20 @@ fn grids_stand_where_the_records_say() {
         quadrature: Quadrature::Midpoint,
         sampling: Sampling::CENTRE,
     };
-    let mut words = frame_words(&program, &frame, &job, [0; 4], 1);
-    words.extend(grid_words(&frame, words.len()));
+    let words = frame_words(&program, &frame, &job, [0; 4], 1);
+    let depths = input_words(&frame);
     let word = |at: usize| f32::from_bits(words[at]);
+    let depth_at = |at: usize| f32::from_bits(depths[at]);
     let lights = HEADER_WORDS + 2 * OBJECT_WORDS + MEDIUM_WORDS;
     let [first, none, last] = [0, 1, 2].map(|light| word(lights + LIGHT_WORDS * light + 10) as usize);
     assert_eq!(none, 0);
     for (record, channels, depth, count) in [(first, 1.0, 7.0, 20), (last, 3.0, 9.0, 60)] {
         assert_eq!((word(record), word(record + 4), word(record + 16)), (1.0, 2.0, 6.0));
         assert_eq!([19, 20, 21, 22, 24, 25].map(|at| word(record + at)), [2.0, 2.0, 5.0, 0.5, 2.0, channels]);
-        let depths = word(record + 26) as usize;
-        assert_eq!((depths % 64, word(depths), word(depths + count - 1)), (0, depth, depth));
+        let first = word(record + 26) as usize;
+        assert_eq!((first % 64, depth_at(first), depth_at(first + count - 1)), (0, depth, depth));
     }
-    assert_eq!(words.len(), word(last + 26) as usize + 60);
+    assert_eq!(depths.len(), word(last + 26) as usize + 60);
 }
 
 #[test]
@@ -229,4 +245,13 @@ fn depth_without_a_surface_is_infinite() {
     assert_eq!(image.pixels[0].transmittance, [0.5, 0.25, 0.125]);
     assert_eq!(image.pixels[1].depth, 7.0);
     assert_eq!(image.pixels[1].error, 0.25);
+}
+
+#[test]
+fn loops_have_the_bounds_that_are_told() {
+    let text = INTEGRATOR.join("\n");
+    for (name, most, _) in LOOP_BOUNDS {
+        let spelled = [format!("const {name}: u32 = {most}u;"), format!("const {name}: i32 = {most};")];
+        assert!(spelled.iter().any(|line| text.contains(line)), "{name}");
+    }
 }

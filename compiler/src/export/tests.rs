@@ -1,0 +1,58 @@
+use super::*;
+use crate::frame::{Quadrature, Sampling};
+
+const JOB: Job = Job {
+    size: [8, 8],
+    step: 0.1,
+    shadow_step: 0.1,
+    quadrature: Quadrature::Midpoint,
+    sampling: Sampling::CENTRE,
+};
+
+fn exported(language: Language, form: Form) -> Result<String, ExportError> {
+    let file = vol_language::source::SourceFile::new("ball.vol", "object ball { shape: sphere(1) }");
+    let (scene, _) = vol_language::analyse(&file, &crate::library::library());
+    let program = crate::lower::compile(&scene.expect("a scene")).0.expect("a program");
+    let frame = program.frame(&program.default_params(), 0.0, 0.0, JOB.size).expect("a frame");
+    let nothing = |_| None;
+    let notes = Notes::new(&program, &nothing);
+    let title = ["ball.vol".to_owned()];
+    let source =
+        Source { program: &program, frame: &frame, job: &JOB, notes: &notes, title: &title, prefix: "sky" };
+    export(&source, language, form).map(|bytes| String::from_utf8(bytes).expect("text"))
+}
+
+#[test]
+fn libraries_have_neither_bindings_nor_entry_points() {
+    for language in [Language::Wgsl, Language::Glsl, Language::Hlsl, Language::Msl] {
+        let text = exported(language, Form::Library).expect("it can be said");
+        assert!(text.contains("sky_distance_ball") && text.contains("sky_radiance"), "{language:?}");
+        for word in [
+            "@group",
+            "@compute",
+            "@fragment",
+            "main_entry",
+            "uniform ",
+            "register(",
+            "[[buffer",
+            "void main(",
+        ] {
+            assert!(!text.contains(word), "{language:?} has `{word}`");
+        }
+    }
+}
+
+#[test]
+fn the_version_stays_first() {
+    let text = exported(Language::Glsl, Form::Module).expect("it can be said");
+    assert!(text.starts_with("#version 310 es\n// ball.vol\n"));
+    assert_eq!(text.matches("#version").count(), 1);
+    assert!(exported(Language::Wgsl, Form::Module).expect("it can be said").starts_with("// ball.vol\n"));
+}
+
+#[test]
+fn some_forms_do_not_exist() {
+    for (language, form) in [(Language::Spirv, Form::Library), (Language::Shadertoy, Form::Module)] {
+        assert!(matches!(exported(language, form), Err(ExportError::NoSuchForm(_))));
+    }
+}

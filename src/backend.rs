@@ -85,11 +85,27 @@ impl Device {
         match choice {
             Choice::Cpu => Ok(Self::Cpu),
             Choice::Gpu => Self::open_gpu(arithmetic),
+            Choice::Auto => Ok(Self::open_any(arithmetic).0),
+        }
+    }
+
+    /// Opens a hardware graphics device, else the CPU, with the reason.
+    #[must_use]
+    pub fn open_any(arithmetic: Arithmetic) -> (Self, Option<String>) {
+        match Self::open_gpu(arithmetic) {
+            Ok(device) if device.is_hardware() => (device, None),
             // Software Vulkan is slower than the CPU path.
-            Choice::Auto => match Self::open_gpu(arithmetic) {
-                Ok(device) if device.is_hardware() => Ok(device),
-                Ok(_) | Err(_) => Ok(Self::Cpu),
-            },
+            Ok(device) => {
+                let description = device.description();
+                let name = description.trim_start_matches("GPU, ");
+                (Self::Cpu, Some(format!("no hardware GPU, only {name}")))
+            }
+            // What to do about it comes after a semicolon, and is being done.
+            Err(Failure::Device(message)) => {
+                let reason = message.text.split(';').next().unwrap_or_default();
+                (Self::Cpu, Some(reason.to_owned()))
+            }
+            Err(_) => (Self::Cpu, None),
         }
     }
 
@@ -106,7 +122,9 @@ impl Device {
         Err(failure.with_help("use the CPU, or build with `--features gpu`"))
     }
 
-    fn is_hardware(&self) -> bool {
+    /// Whether it is a graphics device proper, not one in software.
+    #[must_use]
+    pub fn is_hardware(&self) -> bool {
         match self {
             Self::Cpu => false,
             #[cfg(feature = "gpu")]
@@ -184,6 +202,20 @@ impl Renderer<'_> {
             Target::Cpu(_) => false,
             #[cfg(feature = "gpu")]
             Target::Gpu(..) => true,
+        }
+    }
+
+    /// Compiles what a job needs, if it is not compiled yet.
+    ///
+    /// # Errors
+    /// A device failure.
+    pub fn compile(&self, frame: &Frame, job: &Job) -> Result<(), Failure> {
+        match &self.target {
+            Target::Cpu(_) => Ok(()),
+            #[cfg(feature = "gpu")]
+            Target::Gpu(gpu, renderer) => {
+                renderer.compile(gpu, self.program, frame, job).map_err(|error| gpu_failure(&error))
+            }
         }
     }
 

@@ -229,6 +229,9 @@ pub(crate) struct Compile {
     /// Error allowed from sampling media, for the distance between samples
     #[arg(long, value_name = "E", default_value_t = 0.01, value_parser = values::max_error)]
     pub(crate) max_error: f32,
+    /// Distance between samples of media in scene units, instead of one for an error; twice as much towards lights
+    #[arg(long, value_name = "S", value_parser = values::step, conflicts_with = "max_error")]
+    pub(crate) step: Option<f32>,
     /// Where to write it [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
@@ -271,6 +274,9 @@ pub(crate) struct Diff {
     /// Size of the compared pictures [default: the scene's, at most 256 pixels wide and high]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub(crate) size: Option<Size>,
+    /// Also write how far apart the pictures are, a PNG in false colours: white where all bits are the same
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) difference: Option<PathBuf>,
     /// Have the GPU round each operation by itself, as the CPU does: slower, needs native Vulkan; pictures of both are then equal bit for
     /// bit on a device whose single operations round correctly
     #[arg(long)]

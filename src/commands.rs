@@ -25,6 +25,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use vol::backend::{Choice, Device};
 use vol::failure::{Failure, Message};
 use vol::output::atomic;
 use vol::session::{Moment, Session};
@@ -33,7 +34,7 @@ use vol_compiler::lints;
 use vol_compiler::skip::Skips;
 use vol_compiler::wgsl::Arithmetic;
 use vol_language::diag::{self, Diagnostic};
-use vol_language::source::Sources;
+use vol_language::source::{Sources, Span};
 
 use crate::cli::{self, Command};
 
@@ -141,6 +142,32 @@ fn catch_interrupts() -> Result<(), Failure> {
         }
     };
     ctrlc::set_handler(handler).map_err(|error| Failure::usage(format!("cannot catch interrupts: {error}")))
+}
+
+/// Opens a device, and says so where it is the CPU for want of another.
+fn open(choice: Choice, arithmetic: Arithmetic) -> Result<Device, Failure> {
+    if choice != Choice::Auto {
+        return Device::open(choice, arithmetic);
+    }
+    let (device, reason) = Device::open_any(arithmetic);
+    if let Some(reason) = reason {
+        print_line(&format!("note: {reason}; using the CPU"));
+    }
+    Ok(device)
+}
+
+/// The line of a place, `tornado.vol:9: density: q => …`; what is handed on says nothing of where its scene lay.
+fn line_of(sources: &Sources, span: Span) -> Option<String> {
+    let (file, span) = sources.locate(span);
+    let start = file.text.floor_char_boundary(span.start as usize);
+    let number = file.text[..start].matches('\n').count() + 1;
+    let text = file.text.lines().nth(number - 1)?.trim();
+    Some(format!("{}:{number}: {text}", base(&file.name)))
+}
+
+/// A file's name without its folders.
+fn base(name: &str) -> &str {
+    name.rsplit(['/', '\\']).next().unwrap_or(name)
 }
 
 /// How a graphics device is to compute.

@@ -2,12 +2,15 @@
 //!
 //! * [`field`]: values of a field against the f64 reference and its running error bound
 //! * [`images`]: two pictures under a named tolerance class
+//! * [`first_difference`]: the number of a function at which two backends part
 //!
 //! A report says what was found and whether it [passes](ImageReport::passes); nothing here prints.
 
 mod points;
+mod trace;
 
 pub use points::scatter;
+pub use trace::{Difference, first_difference};
 
 use rayon::prelude::*;
 use vol_compiler::error_bound::{self, Bounded};
@@ -83,6 +86,24 @@ pub fn apart(a: &[f32], b: &[f32], expected: &[Bounded]) -> f64 {
     let decided = a.iter().zip(b).zip(expected).filter(|(_, bounded)| is_decided(bounded));
     let apart = decided.map(|((&a, &b), _)| if a == b { 0.0 } else { number(f64::from(a) - f64::from(b)) });
     apart.fold(0.0, f64::max)
+}
+
+/// How many values of two rows have other bits; what is no number is the same as any other.
+#[must_use]
+pub fn other_bits(a: &[f32], b: &[f32]) -> usize {
+    a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan())).count()
+}
+
+/// How many pixels of two pictures of one size have other bits.
+#[must_use]
+pub fn other_pixels(a: &Image, b: &Image) -> usize {
+    let numbers = |pixel: &Pixel| {
+        let [r, g, b] = pixel.color;
+        let [red, green, blue] = pixel.transmittance;
+        [r, g, b, red, green, blue, pixel.depth]
+    };
+    let pixels = a.pixels.iter().zip(&b.pixels);
+    pixels.filter(|(a, b)| other_bits(&numbers(a), &numbers(b)) > 0).count()
 }
 
 fn is_decided(bounded: &Bounded) -> bool {

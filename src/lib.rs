@@ -15,6 +15,7 @@ pub mod compare;
 pub mod explain;
 pub mod failure;
 pub mod output;
+pub mod probe;
 pub mod profile;
 pub mod reflect;
 pub mod session;

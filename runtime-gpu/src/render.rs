@@ -13,9 +13,10 @@ use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
 use vol_compiler::wgsl;
 
-/// Side of the square tiles in pixels. One dispatch is some samples of one tile, short enough for the
-/// watchdogs of desktop drivers and for a prompt answer to cancelling.
-const TILE: u32 = 64;
+/// Sides of the square tiles in pixels, at first and at most. One dispatch is some samples of one tile, short enough for the
+/// watchdogs of desktop drivers and for a prompt answer to cancelling; tiles grow on devices that are quick.
+const SMALLEST_TILE: u32 = 64;
+const LARGEST_TILE: u32 = 256;
 
 /// How long a dispatch of several samples should take: much longer than it takes to start one, much
 /// shorter than the seconds after which a driver resets the device.
@@ -64,6 +65,17 @@ impl Renderer {
         Ok(kernel.get_or_init(|| compiled))
     }
 
+    /// Compiles what a job needs, if it is not compiled yet: the driver's part included, which some drivers, Mesa's software
+    /// one among them, leave to the first dispatch.
+    ///
+    /// # Errors
+    /// [`GpuError`] if the device refuses the shader or fails.
+    pub fn compile(&self, gpu: &Gpu, program: &Program, frame: &Frame, job: &Job) -> Result<(), GpuError> {
+        let picture = Picture::new(self, gpu, program, frame, job)?;
+        picture.dispatch([0; 4], 0)?;
+        gpu.wait()
+    }
+
     /// Renders one frame. `progress` is told the number of pixels done; `None` means cancelled.
     ///
     /// # Errors
@@ -78,48 +90,106 @@ impl Renderer {
         cancelled: &AtomicBool,
     ) -> Result<Option<(Image, Counts)>, GpuError> {
         let [width, height] = job.size;
-        let kernel = self.kernel(gpu, program, job.quadrature)?;
-        let words = |tile, budget| wgsl::render::frame_words(program, frame, job, tile, budget);
-        let scene = upload(gpu, program, frame)?;
-        let header = gpu.upload(&words([0; 4], 0))?;
-        let input = gpu.upload(&wgsl::render::input_words(frame))?;
-        let inputs: Vec<&Buffer> = scene.iter().chain([&header, &input]).collect();
-        let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
-        let most = job.sampling.most;
+        let picture = Picture::new(self, gpu, program, frame, job)?;
+        let mut side = SMALLEST_TILE;
         let mut done = 0;
-        for tile in tiles(job.size) {
-            let [_, _, w, h] = tile;
-            let pixels = u64::from(w) * u64::from(h);
-            let groups = [w.div_ceil(GROUP_SIDE), h.div_ceil(GROUP_SIDE), 1];
-            let mut taken = 0;
-            let mut budget = 1;
-            // Nobody knows what a sample costs here before the first; later ones cost no more, since
-            // pixels only leave, but one of adaptive sampling that comes with four probes.
-            while taken < most {
-                if cancelled.load(Ordering::Relaxed) {
+        for block in tiles([0, 0, width, height], LARGEST_TILE) {
+            let mut quickest = true;
+            for tile in tiles(block, side) {
+                let Some(was_quick) = picture.tile(tile, |part| progress(done + part), cancelled)? else {
                     return Ok(None);
-                }
-                let started = Instant::now();
-                budget = budget.min(most - taken);
-                gpu.write(&header, &words(tile, budget))?;
-                gpu.dispatch(kernel, &inputs, &output, groups)?;
-                gpu.wait()?;
-                taken += budget;
-                budget = next_budget(budget, started.elapsed());
-                progress(done + pixels * u64::from(taken) / u64::from(most));
+                };
+                quickest &= was_quick;
+                done += pixels(tile);
             }
-            done += pixels;
+            // The next block is cut as coarsely as this one allowed for.
+            side = if quickest { (2 * side).min(LARGEST_TILE) } else { (side / 2).max(SMALLEST_TILE) };
         }
-        let words = gpu.read(&output)?;
+        let words = gpu.read(&picture.output)?;
         Ok(Some((wgsl::render::unpack(width, height, &words), wgsl::render::counts(&words))))
     }
 }
 
-/// Cuts a picture into tiles `[x, y, width, height]`, rows from the top.
-fn tiles([width, height]: [u32; 2]) -> impl Iterator<Item = [u32; 4]> {
-    let edges =
-        |size: u32| (0..size).step_by(TILE as usize).map(move |start| [start, TILE.min(size - start)]);
-    edges(height).flat_map(move |[y, h]| edges(width).map(move |[x, w]| [x, y, w, h]))
+/// A picture in the making: its kernel and its buffers.
+struct Picture<'a> {
+    gpu: &'a Gpu,
+    program: &'a Program,
+    frame: &'a Frame,
+    job: &'a Job,
+    kernel: &'a Kernel,
+    scene: Vec<Buffer>,
+    header: Buffer,
+    input: Buffer,
+    output: Buffer,
+}
+
+impl<'a> Picture<'a> {
+    fn new(
+        renderer: &'a Renderer,
+        gpu: &'a Gpu,
+        program: &'a Program,
+        frame: &'a Frame,
+        job: &'a Job,
+    ) -> Result<Self, GpuError> {
+        let kernel = renderer.kernel(gpu, program, job.quadrature)?;
+        let scene = upload(gpu, program, frame)?;
+        let header = gpu.upload(&wgsl::render::frame_words(program, frame, job, [0; 4], 0))?;
+        let input = gpu.upload(&wgsl::render::input_words(frame))?;
+        let [width, height] = job.size;
+        let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
+        Ok(Self { gpu, program, frame, job, kernel, scene, header, input, output })
+    }
+
+    /// Hands in at most `budget` more samples for each pixel of a tile.
+    fn dispatch(&self, tile: [u32; 4], budget: u32) -> Result<(), GpuError> {
+        let words = wgsl::render::frame_words(self.program, self.frame, self.job, tile, budget);
+        self.gpu.write(&self.header, &words)?;
+        let [_, _, width, height] = tile;
+        let groups = [width.div_ceil(GROUP_SIDE).max(1), height.div_ceil(GROUP_SIDE).max(1), 1];
+        let inputs: Vec<&Buffer> = self.scene.iter().chain([&self.header, &self.input]).collect();
+        self.gpu.dispatch(self.kernel, &inputs, &self.output, groups)
+    }
+
+    /// Takes all samples of a tile; `None` means cancelled. Says whether four times as many pixels would not have taken too
+    /// long at a time.
+    fn tile(
+        &self,
+        tile: [u32; 4],
+        progress: impl Fn(u64),
+        cancelled: &AtomicBool,
+    ) -> Result<Option<bool>, GpuError> {
+        let most = self.job.sampling.most;
+        let (mut taken, mut budget, mut quick) = (0, 1, true);
+        // Nobody knows what a sample costs here before the first; later ones cost no more, since
+        // pixels only leave, but one of adaptive sampling that comes with four probes.
+        while taken < most {
+            if cancelled.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+            let started = Instant::now();
+            budget = budget.min(most - taken);
+            self.dispatch(tile, budget)?;
+            self.gpu.wait()?;
+            let elapsed = started.elapsed();
+            quick &= elapsed / budget < DISPATCH_TIME / 4;
+            taken += budget;
+            budget = next_budget(budget, elapsed);
+            progress(pixels(tile) * u64::from(taken) / u64::from(most));
+        }
+        Ok(Some(quick))
+    }
+}
+
+fn pixels([_, _, width, height]: [u32; 4]) -> u64 {
+    u64::from(width) * u64::from(height)
+}
+
+/// Cuts a rectangle `[x, y, width, height]` into tiles with sides of at most `side`, rows from the top.
+fn tiles([x, y, width, height]: [u32; 4], side: u32) -> impl Iterator<Item = [u32; 4]> {
+    let edges = move |start: u32, size: u32| {
+        (0..size).step_by(side as usize).map(move |offset| [start + offset, side.min(size - offset)])
+    };
+    edges(y, height).flat_map(move |[y, h]| edges(x, width).map(move |[x, w]| [x, y, w, h]))
 }
 
 /// Samples for the next dispatch after one that took some time. No picture depends on it.
@@ -182,7 +252,7 @@ mod tests {
     fn tiles_cover_every_pixel_once() {
         let [width, height] = [150_u32, 65];
         let mut count = vec![0; (width * height) as usize];
-        for [x, y, w, h] in tiles([width, height]) {
+        for [x, y, w, h] in tiles([0, 0, width, height], 100).flat_map(|block| tiles(block, 64)) {
             let pixels = (y..y + h).flat_map(|row| (x..x + w).map(move |column| row * width + column));
             pixels.for_each(|index| count[index as usize] += 1);
         }

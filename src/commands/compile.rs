@@ -6,9 +6,9 @@ use vol::failure::Failure;
 use vol::output::atomic;
 use vol::reflect;
 use vol_compiler::export::{self, ExportError, Form, Language, Source};
-use vol_compiler::frame::{Frame, Job};
+use vol_compiler::frame::{Frame, Job, Quadrature};
 use vol_compiler::wgsl::Notes;
-use vol_language::source::{Sources, Span};
+use vol_language::source::Span;
 
 use super::Prepared;
 use super::values::Size;
@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     let prepared = Prepared::new(&arguments.scene)?;
     let (frame, job) = moment(&prepared, arguments)?;
     let session = &prepared.session;
-    let line = |span: Span| line_of(&session.sources, span);
+    let line = |span: Span| super::line_of(&session.sources, span);
     let source = Source {
         program: &session.program,
         frame: &frame,
@@ -70,28 +70,19 @@ fn moment(prepared: &Prepared, arguments: &cli::Compile) -> Result<(Frame, Job),
     let size = arguments.size.map_or(program.render.size, |Size(size)| size);
     let mut frame = prepared.frame(size)?;
     let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
-    let choice = vol_runtime_cpu::choose(program, &mut frame, size, sampling, arguments.max_error);
+    let job = match arguments.step {
+        Some(step) => {
+            Job { size, step, shadow_step: 2.0 * step, quadrature: Quadrature::Corrected, sampling }
+        }
+        None => vol_runtime_cpu::choose(program, &mut frame, size, sampling, arguments.max_error).job,
+    };
     frame.light_grids.clear();
-    Ok((frame, choice.job))
-}
-
-/// `tornado.vol:9: density: q => …`
-fn line_of(sources: &Sources, span: Span) -> Option<String> {
-    let (file, span) = sources.locate(span);
-    let start = file.text.floor_char_boundary(span.start as usize);
-    let number = file.text[..start].matches('\n').count() + 1;
-    let text = file.text.lines().nth(number - 1)?.trim();
-    Some(format!("{}:{number}: {text}", base(&file.name)))
-}
-
-/// A shader that is handed on says nothing of where its scene lay.
-fn base(name: &str) -> &str {
-    name.rsplit(['/', '\\']).next().unwrap_or(name)
+    Ok((frame, job))
 }
 
 /// What a text says of itself.
 fn title(prepared: &Prepared, frame: &Frame, form: Form) -> Vec<String> {
-    let name = base(&prepared.session.sources.root().name);
+    let name = super::base(&prepared.session.sources.root().name);
     let mut lines = vec![format!("{name}, translated by vol {}", env!("CARGO_PKG_VERSION"))];
     if form == Form::Library {
         lines

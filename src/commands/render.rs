@@ -10,7 +10,7 @@ use vol::session::Moment;
 use vol_compiler::dropped;
 use vol_compiler::frame::{Counts, Frame, Inputs, Sampling};
 use vol_compiler::skip::Skip;
-use vol_runtime_cpu::FilledGrids;
+use vol_runtime_cpu::{FilledGrids, Method};
 
 use super::memory::{self, Memory};
 use super::method;
@@ -39,11 +39,19 @@ pub(super) fn run(arguments: &cli::Render) -> Result<(), Failure> {
         cli::Backend::Auto if arguments.aov.is_some() => Choice::Cpu,
         cli::Backend::Auto => Choice::Auto,
     };
-    let device = Device::open(choice, super::arithmetic(arguments.strict))?;
+    let device = super::open(choice, super::arithmetic(arguments.strict))?;
     let mut stats = new_stats(arguments, &prepared, &device);
     let reference =
         arguments.reference.as_deref().map(|path| read_reference(path, stats.size)).transpose()?;
-    render(arguments, &prepared, &device, reference.as_ref(), &mut stats)?;
+    match render(arguments, &prepared, &device, reference.as_ref(), &mut stats) {
+        // A device that was nobody's wish may fail without harm.
+        Err(Failure::Device(message)) if choice == Choice::Auto => {
+            super::print_line(&format!("note: {}; rendering on the CPU instead", message.text));
+            stats = new_stats(arguments, &prepared, &Device::Cpu);
+            render(arguments, &prepared, &Device::Cpu, reference.as_ref(), &mut stats)
+        }
+        done => done,
+    }?;
     stats.memory.peak = memory::peak_resident();
     if let Some(path) = &arguments.stats {
         write_stats(&stats, path)?;
@@ -211,6 +219,9 @@ impl Pictures<'_> {
             let threads = rayon::current_num_threads();
             let bound = vol_runtime_cpu::memory_bound(program, &frame, &plan.job, threads, &self.filled);
             memory.bound = memory.bound.max(Some(bound));
+        }
+        if plan.method == Method::Comb && self.arguments.aov.is_none() {
+            timed(&mut phases.prepare, || self.renderer.compile(&frame, &plan.job))?;
         }
         // Compute the picture.
         let before = self.pixels * *frames;

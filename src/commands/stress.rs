@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &cli::Stress) -> Result<(), Failure> {
     let device = match arguments.backend {
         Backend::Cpu => Device::Cpu,
         Backend::Gpu => Device::open(Choice::Gpu, Arithmetic::Free)?,
-        Backend::Auto => Device::open(Choice::Auto, Arithmetic::Free)?,
+        Backend::Auto => super::open(Choice::Auto, Arithmetic::Free)?,
     };
     let mut devices = vec![&Device::Cpu];
     if !matches!(device, Device::Cpu) {

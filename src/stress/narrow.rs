@@ -12,11 +12,13 @@
 use vol_compiler::error_bound::{self, Bounded};
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::{Function, FunctionId, Inst, Module, ValueId};
-use vol_compiler::ops::{self, Context, Op, Operation, Ty};
+use vol_compiler::ops::{self, Context, Op, Operation};
 use vol_compiler::program::Program;
 use vol_compiler::reference;
 use vol_language::source::Span;
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
+
+use crate::probe::Probe;
 
 use super::findings::{At, written};
 use super::targets::Target;
@@ -38,9 +40,7 @@ pub(super) struct Narrow<'a> {
     frame: &'a Frame,
     function: &'a Function,
     places: Vec<Option<Span>>,
-    /// The function with all its numbers as outputs, and which output each is.
-    probe: Function,
-    outputs: Vec<Option<usize>>,
+    probe: Probe,
 }
 
 impl<'a> Narrow<'a> {
@@ -48,21 +48,13 @@ impl<'a> Narrow<'a> {
         let function = program.module.function(target.function);
         let origins = program.origins.get(target.function.index());
         let places = origins.map_or_else(|| vec![None; function.insts.len()], |o| o.places(function));
-        let mut probe = Function { outputs: Vec::new(), ..function.clone() };
-        let mut outputs = vec![None; function.insts.len()];
-        for (value, inst) in (0..).map(ValueId).zip(&function.insts) {
-            if inst.parts().is_none() && function.ty(value) == Ty::Number {
-                outputs[value.index()] = Some(probe.outputs.len());
-                probe.outputs.push(value);
-            }
-        }
-        Self { frame, function, places, probe, outputs }
+        Self { frame, function, places, probe: Probe::new(function) }
     }
 
     /// Where infinity or what is no number comes from.
     pub(super) fn not_finite(&self, at: At<'_>) -> Blame {
         let values = self.singles(at.inputs);
-        let of = |value: ValueId| self.outputs[value.index()].map(|output| values[output]);
+        let of = |value: ValueId| self.probe.outputs[value.index()].map(|output| values[output]);
         let wrong = |value: ValueId| of(value).is_some_and(|x| !x.is_finite());
         let value = self.follow(self.function.outputs[at.output], |operands| {
             operands.iter().copied().find(|&operand| wrong(operand))
@@ -76,8 +68,9 @@ impl<'a> Narrow<'a> {
 
     /// Where the error comes from.
     pub(super) fn lost_digits(&self, at: At<'_>) -> Blame {
-        let values = error_bound::evaluate(&self.probe, at.inputs, &self.frame.uniforms, &self.frame.curves);
-        let of = |value: ValueId| self.outputs[value.index()].map(|output| values[output]);
+        let values =
+            error_bound::evaluate(&self.probe.function, at.inputs, &self.frame.uniforms, &self.frame.curves);
+        let of = |value: ValueId| self.probe.outputs[value.index()].map(|output| values[output]);
         let mut value = self.function.outputs[at.output];
         loop {
             let inner = self.through(value);
@@ -110,10 +103,11 @@ impl<'a> Narrow<'a> {
 
     /// What jumps first between two places.
     pub(super) fn jumps(&self, ends: [&[f64]; 2], output: usize) -> Blame {
-        let values = ends
-            .map(|inputs| reference::evaluate(&self.probe, inputs, &self.frame.uniforms, &self.frame.curves));
+        let values = ends.map(|inputs| {
+            reference::evaluate(&self.probe.function, inputs, &self.frame.uniforms, &self.frame.curves)
+        });
         let change = |value: ValueId| {
-            self.outputs[value.index()].map_or(0.0, |output| {
+            self.probe.outputs[value.index()].map_or(0.0, |output| {
                 let [a, b] = [values[0][output], values[1][output]];
                 let size = a.abs().max(b.abs()).max(1e-3);
                 if a == b { 0.0 } else { (a - b).abs() / size }
@@ -154,11 +148,11 @@ impl<'a> Narrow<'a> {
 
     /// All numbers of the function in f32.
     fn singles(&self, inputs: &[f32]) -> Vec<f32> {
-        let module = Module { frame: Function::default(), functions: vec![self.probe.clone()] };
+        let module = Module { frame: Function::default(), functions: vec![self.probe.function.clone()] };
         let tapes = Tapes::of_module(&module);
         let frame = self.frame;
         let mut evaluator = Evaluator::of_parts(&tapes, &frame.uniforms_f32, &frame.curve_tables);
-        let mut values = vec![[0.0]; self.probe.outputs.len()];
+        let mut values = vec![[0.0]; self.probe.function.outputs.len()];
         let mut slices: Vec<&mut [f32]> = values.iter_mut().map(<[f32; 1]>::as_mut_slice).collect();
         let inputs: Vec<&[f32]> = inputs.iter().map(std::slice::from_ref).collect();
         evaluator.evaluate(FunctionId(0), &inputs, &mut slices);

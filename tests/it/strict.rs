@@ -199,12 +199,12 @@ fn same_scene(gpu: &Gpu, bytes: &[u8], seed: u64) -> Result<(), Failed> {
     let size = [12, 8];
     let frame = program.frame(&program.default_params(), 0.7, 2.0, size).map_err(|d| d.message)?;
     same_fields(gpu, &program, &frame, 24)?;
-    if (seed / PARTS) % DRAWN != 0 {
+    if !(seed / PARTS).is_multiple_of(DRAWN) {
         return Ok(());
     }
     let quadrature =
-        if (seed / PARTS / DRAWN) % 2 == 0 { Quadrature::Midpoint } else { Quadrature::Corrected };
-    let sampling = if (seed / PARTS / DRAWN) % 3 == 0 {
+        if (seed / PARTS / DRAWN).is_multiple_of(2) { Quadrature::Midpoint } else { Quadrature::Corrected };
+    let sampling = if (seed / PARTS / DRAWN).is_multiple_of(3) {
         Sampling { most: 17, tolerance: 0.05 }
     } else {
         Sampling::CENTRE

@@ -16,6 +16,8 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("check::all_files_are_checked", check_all),
         trial("explain", explain),
         trial("compile::wgsl", compile),
+        trial("compile::languages", compile_languages),
+        trial("compile::reflection", compile_reflection),
         trial("query::reference_and_cpu", query),
         trial("query::points_from_a_file", query_file),
         trial("query::params_and_time", query_params),
@@ -169,12 +171,66 @@ fn explain(sandbox: &Sandbox) -> Result<(), Failed> {
 
 fn compile(sandbox: &Sandbox) -> Result<(), Failed> {
     let text = sandbox.vol("compile ball.vol --target wgsl")?.expect(0, &[])?.stdout;
-    equal((text.contains("@compute"), text.ends_with('\n')), (true, true))?;
+    equal((text.contains("@compute"), text.contains("@fragment"), text.ends_with('\n')), (true, true, true))?;
+    equal(text.contains("// ball.vol:"), true)?;
     let outcome = sandbox.vol("compile ball.vol --target wgsl -o a.wgsl")?.expect(0, &[])?;
     equal(outcome.stdout, String::new())?;
     equal(String::from_utf8(sandbox.read("a.wgsl")?)?, text)?;
     sandbox.vol("compile ball.vol")?.expect(2, &["--target"])?;
-    sandbox.vol("compile ball.vol --target glsl")?.expect(2, &["wgsl"]).map(drop)
+    sandbox.vol("compile ball.vol --target basic")?.expect(2, &["wgsl", "shadertoy"]).map(drop)
+}
+
+/// Every language, in the forms that it has.
+fn compile_languages(sandbox: &Sandbox) -> Result<(), Failed> {
+    for (target, form, words) in [
+        ("glsl", "module", ["#version 310 es", "VOL_COMPUTE"]),
+        ("glsl", "library", ["sky_distance_ball", "sky_radiance"]),
+        ("hlsl", "module", ["numthreads", "SV_Position"]),
+        ("msl", "module", ["kernel", "fragment"]),
+        ("shadertoy", "library", ["mainImage", "iResolution"]),
+        ("wgsl", "library", ["fn sky_density(p: vec3f) -> f32", "The scene at 2 s"]),
+    ] {
+        let run = format!("compile ball.vol --target {target} --as {form} --prefix sky --time 2s");
+        let text = sandbox.vol(&run)?.expect(0, &[])?.stdout;
+        equal((target, words.map(|word| text.contains(word))), (target, [true; 2]))?;
+    }
+    sandbox.vol("compile ball.vol --target spirv -o a.spv")?.expect(0, &[])?;
+    equal(sandbox.read("a.spv")?[..4].to_vec(), vec![3, 2, 0x23, 7])?;
+    sandbox.vol("compile ball.vol --target spirv --as library")?.expect(2, &["SPIR-V", "--as"])?;
+    sandbox.vol("compile ball.vol --target shadertoy --as module")?.expect(2, &["Shadertoy", "--as"])?;
+    sandbox.vol("compile ball.vol --target wgsl --prefix 9")?.expect(2, &["--prefix"])?;
+    sandbox.vol("compile ball.vol --target wgsl --step 0.1 --max-error 0.1")?.expect(2, &["--step"])?;
+    sandbox
+        .vol("compile ball.vol --target wgsl --reflect no/such/folder.json")?
+        .expect(2, &["no/such"])
+        .map(drop)
+}
+
+/// What a caller must know; contents of buffers are those of the moment.
+fn compile_reflection(sandbox: &Sandbox) -> Result<(), Failed> {
+    let reflected = |more: &str| -> Result<serde_json::Value, Failed> {
+        let run = format!("compile ball.vol --target wgsl --reflect a.json -o a.wgsl {more}");
+        sandbox.vol(&run)?.expect(0, &[])?;
+        Ok(serde_json::from_slice(&sandbox.read("a.json")?)?)
+    };
+    let (usual, other) = (reflected("")?, reflected("-D size=0.5")?);
+    equal(usual["params"][0]["name"].as_str(), Some("size"))?;
+    equal(usual["bindings"][0]["words"] == other["bindings"][0]["words"], false)?;
+    let names: Vec<_> =
+        usual["bindings"].as_array().into_iter().flatten().map(|b| b["name"].as_str()).collect();
+    let expected = ["vol_uniforms", "vol_curves", "vol_permutation", "vol_frame", "vol_input", "vol_output"];
+    equal(names, expected.map(Some).to_vec())?;
+    let text = String::from_utf8(sandbox.read("a.wgsl")?)?;
+    for vectors in usual["test_vectors"].as_array().into_iter().flatten() {
+        let function = vectors["function"].as_str().unwrap_or_default();
+        equal((function, text.contains(&format!("fn {function}("))), (function, true))?;
+        equal(vectors["points"].as_array().is_some_and(|points| !points.is_empty()), true)?;
+    }
+    let library = reflected("--as library")?;
+    equal(
+        (library["bindings"].is_null(), library["functions"][0]["name"].as_str()),
+        (true, Some("vol_distance")),
+    )
 }
 
 fn query(sandbox: &Sandbox) -> Result<(), Failed> {
@@ -252,7 +308,11 @@ fn no_device(sandbox: &Sandbox) -> Result<(), Failed> {
         let output = command.env("VK_DRIVER_FILES", "/nowhere.json").output()?;
         Outcome::from(output).expect(3, &["error: ", "CPU"])?;
     }
-    equal(sandbox.new_files()?, vec![])
+    equal(sandbox.new_files()?, vec![])?;
+    // Where nobody asked for the GPU the CPU does it, and a line says why.
+    let mut command = sandbox.command("render ball.vol -o a.png --backend auto".split_whitespace());
+    let output = command.env("VK_DRIVER_FILES", "/nowhere.json").output()?;
+    Outcome::from(output).expect(0, &["note: ", "using the CPU", "on CPU"]).map(drop)
 }
 
 #[cfg(feature = "gpu")]
@@ -267,7 +327,12 @@ fn diff(sandbox: &Sandbox) -> Result<(), Failed> {
     }
     let outcome =
         sandbox.vol("diff ball.vol --points 10 --size 8x4 --time 1s -D size=0.5")?.expect(0, &[])?;
-    equal(outcome.stdout.contains("8x4"), true)
+    equal(outcome.stdout.contains("8x4"), true)?;
+    // Bits are counted, and with strict arithmetic on software demanded.
+    let outcome =
+        sandbox.vol("diff fog.vol --points 100 --strict --difference d.png")?.expect(0, &["strict"])?;
+    equal(outcome.stdout.contains("other bits"), true)?;
+    equal(sandbox.read("d.png")?[1..4].to_vec(), b"PNG".to_vec())
 }
 
 #[cfg(feature = "gpu")]

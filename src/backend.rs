@@ -209,6 +209,7 @@ impl Renderer<'_> {
     ///
     /// # Errors
     /// A device failure.
+    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, reason = "the CPU needs nothing compiled"))]
     pub fn compile(&self, frame: &Frame, job: &Job) -> Result<(), Failure> {
         match &self.target {
             Target::Cpu(_) => Ok(()),

@@ -1,0 +1,4973 @@
+// tornado.vol, translated by vol 0.1.0
+// The scene at 0 s with the params it was translated with.
+// To be called:
+//   distance(p: vec3f) -> f32: Bound on the distance to the nearest object, negative inside, scene units.
+//   density(p: vec3f) -> f32: Sum of the densities of all media.
+//   radiance(origin: vec3f, direction: vec3f) -> vec4f: Scene-linear radiance along a ray from the camera or another place outside the objects, and what it hides of what is behind.
+//   pixel(place: vec2f) -> vec4f: The same through a place of the picture, in pixels from its upper left corner.
+//   distance_cloud(p: vec3f) -> f32: The field `distance:cloud` of the scene.
+//   density_cloud(p: vec3f) -> f32: The field `density:cloud` of the scene.
+//   colour_cloud(p: vec3f) -> vec3f: The field `colour:cloud` of the scene.
+//   local_cloud(p: vec3f) -> vec3f: The field `local:cloud` of the scene.
+
+struct Vol_Cell {
+    int3 corner;
+    int _pad1_0;
+    float3 place;
+    int _pad2_0;
+    float3 fade;
+    int _end_pad_0;
+};
+
+struct Vol_Blend {
+    float value;
+    int _pad1_0;
+    int _pad1_1;
+    int _pad1_2;
+    float3 gradient;
+    int _pad2_0;
+    float3 slope;
+    int _end_pad_0;
+};
+
+struct Vol_CurvePoint {
+    float t;
+    float arc_length;
+    float curve_length;
+    float x;
+    float y;
+    float distance_;
+    float overshoot;
+    float stretch;
+};
+
+struct Vol_Foot {
+    float t;
+    float dist_sq;
+};
+
+struct Vol_Inner {
+    float t;
+    float dist_sq;
+    bool start_is_least;
+    float start_sq;
+    bool dips;
+};
+
+struct Vol_Search {
+    float dist_sq;
+    float t;
+    uint piece;
+    bool left_at_last;
+};
+
+struct Vol_CurveSlopes {
+    float3 direction;
+    int _pad1_0;
+    float3 tangent;
+    float rate;
+    float slide;
+    int _end_pad_0;
+    int _end_pad_1;
+    int _end_pad_2;
+};
+
+struct Vol_Curve {
+    uint first;
+    uint count;
+};
+
+struct Vol_Out10_ {
+    float v0_;
+    float v1_;
+    float v2_;
+    float v3_;
+    float v4_;
+    float v5_;
+    float v6_;
+    float v7_;
+    float v8_;
+    float v9_;
+};
+
+struct Vol_in_Response {
+    float3 emitted;
+    int _pad1_0;
+    float3 diffuse;
+    int _pad2_0;
+    float3 specular;
+    float shininess;
+};
+
+struct Vol_in_Interior {
+    float density;
+    int _pad1_0;
+    int _pad1_1;
+    int _pad1_2;
+    float3 scattering;
+    int _pad2_0;
+    float3 extinction;
+    int _pad3_0;
+    float3 emission;
+    int _end_pad_0;
+};
+
+struct Vol_in_Mean {
+    uint count;
+    int _pad1_0;
+    int _pad1_1;
+    int _pad1_2;
+    float3 color;
+    int _pad2_0;
+    float3 transmittance;
+    float depth;
+    float color_spread;
+    float transmittance_spread;
+    float doubt;
+    int _end_pad_0;
+};
+
+struct Vol_in_Ray {
+    float3 origin;
+    int _pad1_0;
+    float3 direction;
+    float shift;
+};
+
+struct Vol_in_Radiance {
+    float3 color;
+    int _pad1_0;
+    float3 transmittance;
+    float depth;
+    float doubt;
+    int _end_pad_0;
+    int _end_pad_1;
+    int _end_pad_2;
+};
+
+struct Vol_in_Contact {
+    bool hit;
+    uint solid;
+    float t;
+    int _pad3_0;
+    float3 position;
+    int _pad4_0;
+    float3 normal;
+    float residual;
+};
+
+struct Vol_in_Span {
+    float entry;
+    float leave;
+};
+
+struct Vol_in_Near {
+    float distance_;
+    float value;
+    uint solid;
+    float gap;
+    float rest;
+};
+
+struct Vol_in_Bracket {
+    float2 outside;
+    float2 inside;
+};
+
+struct Vol_in_Arriving {
+    float3 direction;
+    float distance_;
+    float3 irradiance;
+    bool shadows;
+    float slope;
+    uint grid;
+    int _end_pad_0;
+    int _end_pad_1;
+};
+
+struct Vol_in_Around {
+    float distance_;
+    float safe;
+    float gap;
+};
+
+struct Vol_in_Stencil {
+    uint4 at;
+    float4 weights;
+};
+
+struct Vol_in_Comb {
+    float step_;
+    float offset;
+    float end;
+    int first;
+    int last;
+    int _pad5_0;
+    int2 ranges[1];
+    float before[1];
+    float own[1];
+};
+
+struct Vol_in_Between {
+    float next;
+    int _pad1_0;
+    float2 walls;
+    uint count;
+    int _end_pad_0;
+};
+
+struct Vol_in_Gap {
+    float2 start;
+    float2 stop;
+};
+
+struct Vol_in_Crossing {
+    float2 inside;
+    float2 outside;
+    uint moved;
+    int _end_pad_0;
+};
+
+struct Vol_in_Glow {
+    float3 light;
+    int _pad1_0;
+    float3 transmittance;
+    int _pad2_0;
+    float3 coarse_light;
+    int _pad3_0;
+    float3 coarse_transmittance;
+    int _end_pad_0;
+};
+
+struct Vol_in_Panels {
+    Vol_in_Interior interiors[4];
+    float3 sources[4];
+    int _pad2_0;
+    float2 walls[1];
+    uint2 ends[1];
+    float2 masses[1];
+    int _pad5_0;
+    int _pad5_1;
+    float3 depth;
+    bool some;
+    bool lit_;
+};
+
+struct Vol_in_Chunk {
+    float3 sent;
+    int _pad1_0;
+    float3 depth;
+    int _end_pad_0;
+};
+
+typedef float4 ret_Constructarray7_float4_[7];
+ret_Constructarray7_float4_ Constructarray7_float4_(float4 arg0, float4 arg1, float4 arg2, float4 arg3, float4 arg4, float4 arg5, float4 arg6) {
+    float4 ret[7] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6 };
+    return ret;
+}
+
+typedef float4 ret_Constructarray39_float4_[39];
+ret_Constructarray39_float4_ Constructarray39_float4_(float4 arg0, float4 arg1, float4 arg2, float4 arg3, float4 arg4, float4 arg5, float4 arg6, float4 arg7, float4 arg8, float4 arg9, float4 arg10, float4 arg11, float4 arg12, float4 arg13, float4 arg14, float4 arg15, float4 arg16, float4 arg17, float4 arg18, float4 arg19, float4 arg20, float4 arg21, float4 arg22, float4 arg23, float4 arg24, float4 arg25, float4 arg26, float4 arg27, float4 arg28, float4 arg29, float4 arg30, float4 arg31, float4 arg32, float4 arg33, float4 arg34, float4 arg35, float4 arg36, float4 arg37, float4 arg38) {
+    float4 ret[39] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7, arg8, arg9, arg10, arg11, arg12, arg13, arg14, arg15, arg16, arg17, arg18, arg19, arg20, arg21, arg22, arg23, arg24, arg25, arg26, arg27, arg28, arg29, arg30, arg31, arg32, arg33, arg34, arg35, arg36, arg37, arg38 };
+    return ret;
+}
+
+typedef uint4 ret_Constructarray64_uint4_[64];
+ret_Constructarray64_uint4_ Constructarray64_uint4_(uint4 arg0, uint4 arg1, uint4 arg2, uint4 arg3, uint4 arg4, uint4 arg5, uint4 arg6, uint4 arg7, uint4 arg8, uint4 arg9, uint4 arg10, uint4 arg11, uint4 arg12, uint4 arg13, uint4 arg14, uint4 arg15, uint4 arg16, uint4 arg17, uint4 arg18, uint4 arg19, uint4 arg20, uint4 arg21, uint4 arg22, uint4 arg23, uint4 arg24, uint4 arg25, uint4 arg26, uint4 arg27, uint4 arg28, uint4 arg29, uint4 arg30, uint4 arg31, uint4 arg32, uint4 arg33, uint4 arg34, uint4 arg35, uint4 arg36, uint4 arg37, uint4 arg38, uint4 arg39, uint4 arg40, uint4 arg41, uint4 arg42, uint4 arg43, uint4 arg44, uint4 arg45, uint4 arg46, uint4 arg47, uint4 arg48, uint4 arg49, uint4 arg50, uint4 arg51, uint4 arg52, uint4 arg53, uint4 arg54, uint4 arg55, uint4 arg56, uint4 arg57, uint4 arg58, uint4 arg59, uint4 arg60, uint4 arg61, uint4 arg62, uint4 arg63) {
+    uint4 ret[64] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7, arg8, arg9, arg10, arg11, arg12, arg13, arg14, arg15, arg16, arg17, arg18, arg19, arg20, arg21, arg22, arg23, arg24, arg25, arg26, arg27, arg28, arg29, arg30, arg31, arg32, arg33, arg34, arg35, arg36, arg37, arg38, arg39, arg40, arg41, arg42, arg43, arg44, arg45, arg46, arg47, arg48, arg49, arg50, arg51, arg52, arg53, arg54, arg55, arg56, arg57, arg58, arg59, arg60, arg61, arg62, arg63 };
+    return ret;
+}
+
+typedef float4 ret_Constructarray19_float4_[19];
+ret_Constructarray19_float4_ Constructarray19_float4_(float4 arg0, float4 arg1, float4 arg2, float4 arg3, float4 arg4, float4 arg5, float4 arg6, float4 arg7, float4 arg8, float4 arg9, float4 arg10, float4 arg11, float4 arg12, float4 arg13, float4 arg14, float4 arg15, float4 arg16, float4 arg17, float4 arg18) {
+    float4 ret[19] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7, arg8, arg9, arg10, arg11, arg12, arg13, arg14, arg15, arg16, arg17, arg18 };
+    return ret;
+}
+
+typedef float4 ret_Constructarray24_float4_[24];
+ret_Constructarray24_float4_ Constructarray24_float4_(float4 arg0, float4 arg1, float4 arg2, float4 arg3, float4 arg4, float4 arg5, float4 arg6, float4 arg7, float4 arg8, float4 arg9, float4 arg10, float4 arg11, float4 arg12, float4 arg13, float4 arg14, float4 arg15, float4 arg16, float4 arg17, float4 arg18, float4 arg19, float4 arg20, float4 arg21, float4 arg22, float4 arg23) {
+    float4 ret[24] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7, arg8, arg9, arg10, arg11, arg12, arg13, arg14, arg15, arg16, arg17, arg18, arg19, arg20, arg21, arg22, arg23 };
+    return ret;
+}
+
+typedef float2 ret_Constructarray8_float2_[8];
+ret_Constructarray8_float2_ Constructarray8_float2_(float2 arg0, float2 arg1, float2 arg2, float2 arg3, float2 arg4, float2 arg5, float2 arg6, float2 arg7) {
+    float2 ret[8] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7 };
+    return ret;
+}
+
+typedef float2 ret_Constructarray19_float2_[19];
+ret_Constructarray19_float2_ Constructarray19_float2_(float2 arg0, float2 arg1, float2 arg2, float2 arg3, float2 arg4, float2 arg5, float2 arg6, float2 arg7, float2 arg8, float2 arg9, float2 arg10, float2 arg11, float2 arg12, float2 arg13, float2 arg14, float2 arg15, float2 arg16, float2 arg17, float2 arg18) {
+    float2 ret[19] = { arg0, arg1, arg2, arg3, arg4, arg5, arg6, arg7, arg8, arg9, arg10, arg11, arg12, arg13, arg14, arg15, arg16, arg17, arg18 };
+    return ret;
+}
+
+typedef float ret_Constructarray5_float_[5];
+ret_Constructarray5_float_ Constructarray5_float_(float arg0, float arg1, float arg2, float arg3, float arg4) {
+    float ret[5] = { arg0, arg1, arg2, arg3, arg4 };
+    return ret;
+}
+
+static const float4 vol_uniforms[7] = Constructarray7_float4_(float4(0.0, 0.0033465358, 0.0051815165, 0.014443844), float4(10.0, 30.0, 1.0, 1.1), float4(4.5, 0.6981317, 0.0, 0.4), float4(0.2, 2.2, 1.5609045, 0.69090724), float4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), float4(1.1264106, 5.0, 0.0, 0.0), float4(-0.4, 0.8, 0.3, 12.0));
+static const float4 vol_curves[39] = Constructarray39_float4_(float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, 0.055, 0.0, -0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, -0.5, 1.1295928), float4(-1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 0.0, 1.0, 2.2591856), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.33686078, 0.9263671), float4(0.16843039, -0.33686078, 0.9263671, -0.16843039), float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, -0.055, 0.0, 0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, 0.5, 1.1295928), float4(1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 1.0, 0.0, 2.2591856), float4(0.0, 2.2, 0.0, 0.0), float4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), float4(-0.16843039, 0.0, 1.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0));
+static const uint4 vol_permutation[64] = Constructarray64_uint4_(uint4(151u, 160u, 137u, 91u), uint4(90u, 15u, 131u, 13u), uint4(201u, 95u, 96u, 53u), uint4(194u, 233u, 7u, 225u), uint4(140u, 36u, 103u, 30u), uint4(69u, 142u, 8u, 99u), uint4(37u, 240u, 21u, 10u), uint4(23u, 190u, 6u, 148u), uint4(247u, 120u, 234u, 75u), uint4(0u, 26u, 197u, 62u), uint4(94u, 252u, 219u, 203u), uint4(117u, 35u, 11u, 32u), uint4(57u, 177u, 33u, 88u), uint4(237u, 149u, 56u, 87u), uint4(174u, 20u, 125u, 136u), uint4(171u, 168u, 68u, 175u), uint4(74u, 165u, 71u, 134u), uint4(139u, 48u, 27u, 166u), uint4(77u, 146u, 158u, 231u), uint4(83u, 111u, 229u, 122u), uint4(60u, 211u, 133u, 230u), uint4(220u, 105u, 92u, 41u), uint4(55u, 46u, 245u, 40u), uint4(244u, 102u, 143u, 54u), uint4(65u, 25u, 63u, 161u), uint4(1u, 216u, 80u, 73u), uint4(209u, 76u, 132u, 187u), uint4(208u, 89u, 18u, 169u), uint4(200u, 196u, 135u, 130u), uint4(116u, 188u, 159u, 86u), uint4(164u, 100u, 109u, 198u), uint4(173u, 186u, 3u, 64u), uint4(52u, 217u, 226u, 250u), uint4(124u, 123u, 5u, 202u), uint4(38u, 147u, 118u, 126u), uint4(255u, 82u, 85u, 212u), uint4(207u, 206u, 59u, 227u), uint4(47u, 16u, 58u, 17u), uint4(182u, 189u, 28u, 42u), uint4(223u, 183u, 170u, 213u), uint4(119u, 248u, 152u, 2u), uint4(44u, 154u, 163u, 70u), uint4(221u, 153u, 101u, 155u), uint4(167u, 43u, 172u, 9u), uint4(129u, 22u, 39u, 253u), uint4(19u, 98u, 108u, 110u), uint4(79u, 113u, 224u, 232u), uint4(178u, 185u, 112u, 104u), uint4(218u, 246u, 97u, 228u), uint4(251u, 34u, 242u, 193u), uint4(238u, 210u, 144u, 12u), uint4(191u, 179u, 162u, 241u), uint4(81u, 51u, 145u, 235u), uint4(249u, 14u, 239u, 107u), uint4(49u, 192u, 214u, 31u), uint4(181u, 199u, 106u, 157u), uint4(184u, 84u, 204u, 176u), uint4(115u, 121u, 50u, 45u), uint4(127u, 4u, 150u, 254u), uint4(138u, 236u, 205u, 93u), uint4(222u, 114u, 67u, 29u), uint4(24u, 72u, 243u, 141u), uint4(128u, 195u, 78u, 66u), uint4(215u, 61u, 156u, 180u));
+static const float4 vol_frame[19] = Constructarray19_float4_(float4(0.0, 0.0, 960.0, 540.0), float4(960.0, 540.0, 0.0042843656, 0.008568731), float4(0.0, 1.1, 4.5, 0.0), float4(0.0, -1.0, 0.6470582, 0.0), float4(0.0, 0.0, 0.36397022, 0.0), float4(0.0033465358, 0.0051815165, 0.014443844, 1.0), float4(1.0, 0.0, 1.0, 3.0), float4(-0.60002863, -0.60002863, -0.60002863, 1.000029), float4(2.8000307, 0.8000288, 0.0, 16.0), float4(1.0, -0.42399916, 0.8479983, 0.31799936), float4(12.0, 12.0, 12.0, 1.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0));
+static const float4 vol_input[24] = Constructarray24_float4_(float4(-0.07849332, -0.03100111, -0.08124195, 0.12536836), float4(0.16850124, 0.10467947, -0.038403668, 0.107851274), float4(-0.064069755, 0.1727788, 0.3046489, 0.13125731), float4(-0.008553555, 0.24621235, -0.05407174, 0.21792875), float4(0.44128785, 0.15875934, 0.010998466, 0.3846571), float4(-0.051262047, 0.26087677, 0.57784307, 0.18719967), float4(0.020236308, 0.52379215, -0.05564443, 0.30163896), float4(0.71370804, 0.21658209, 0.019191828, 0.6642433), float4(-0.067210674, 0.3401835, 0.84825695, 0.24689835), float4(0.007948153, 0.8066414, -0.08580606, 0.3764272), float4(0.98085874, 0.27799374, -0.0131498, 0.9516064), float4(-0.1115874, 0.41002518, 1.1108938, 0.3100251), float4(-0.04768115, 1.087319, -0.14611875, 0.44455653), float4(1.2501811, 0.34455645, -0.0956435, 1.2085621), float4(-0.1894001, 0.48001888, 1.403938, 0.3815878), float4(-0.15293887, 1.3255475, -0.23986568, 0.5123142), float4(1.5619527, 0.41955334, -0.21955688, 1.4378978), float4(-0.29706544, 0.5414322, 1.7246025, 0.4580031), float4(-0.29523104, 1.5453081, -0.36114627, 0.5671063), float4(1.8921922, 0.4970839, -0.37969407, 1.6475452), float4(-0.43204588, 0.5890693, 2.0649552, 0.53673345), float4(-0.47268757, 1.7444439, -0.5097059, 0.6070627), float4(2.2430565, 0.57689345, -0.5739689, 1.8359008), float4(-0.5940731, 0.62084395, 2.4265997, 0.6175107));
+static const float VOL_SMALLEST = 1.1754944e-38;
+static const float VOL_LARGEST = 3.4028235e38;
+static const float VOL_TURNS_PER_RADIAN = 0.15915494;
+static const float VOL_PI = 3.1415927;
+static const float VOL_HALF_PI = 1.5707964;
+static const float VOL_LOG2_E = 1.442695;
+static const float VOL_LN_2_ = 0.6931472;
+static const float VOL_FIELD = 4194303.0;
+static const float VOL_WHOLES = 16777216.0;
+static const float VOL_PRODUCT = 1099511600000.0;
+static const float VOL_OCTAVES = 32.0;
+static const uint VOL_PIECE_WORDS = 52u;
+static const float VOL_TINY = 1e-30;
+static const float VOL_FAR = 1e18;
+static const float VOL_REACH = 100000000.0;
+static const float VOL_STRETCH = 1000000.0;
+static const float VOL_LEAN = 0.001;
+static const float VOL_LEAST_STRETCH = 0.05;
+static const float VOL_LARGEST_RATE = 1000000000000000.0;
+static const uint VOL_IN_AT_TILE = 0u;
+static const uint VOL_IN_AT_SIZE = 4u;
+static const uint VOL_IN_AT_STEP = 6u;
+static const uint VOL_IN_AT_SHADOW_STEP = 7u;
+static const uint VOL_IN_AT_EYE = 8u;
+static const uint VOL_IN_AT_FORWARD = 11u;
+static const uint VOL_IN_AT_RIGHT = 14u;
+static const uint VOL_IN_AT_UP = 17u;
+static const uint VOL_IN_AT_BACKGROUND = 20u;
+static const uint VOL_IN_AT_LIGHT_COUNT = 23u;
+static const uint VOL_IN_AT_SAMPLES = 24u;
+static const uint VOL_IN_AT_TOLERANCE = 25u;
+static const uint VOL_IN_AT_BUDGET = 26u;
+static const uint VOL_IN_OBJECT_COUNT = 0u;
+static const uint VOL_IN_MEDIUM_COUNT = 1u;
+static const uint VOL_IN_OBJECT_SLOTS = 1u;
+static const uint VOL_IN_MEDIUM_SLOTS = 1u;
+static const uint VOL_IN_OBJECT_WORDS = 8u;
+static const uint VOL_IN_MEDIUM_WORDS = 9u;
+static const uint VOL_IN_CELL_WORDS = 6u;
+static const uint VOL_IN_LIGHT_WORDS = 11u;
+static const uint VOL_IN_PIXEL_WORDS = 15u;
+static const uint VOL_IN_AT_OBJECTS = 27u;
+static const uint VOL_IN_AT_MEDIA = 27u;
+static const uint VOL_IN_AT_LIGHTS = 36u;
+static const bool VOL_IN_CORRECTED = true;
+static const bool VOL_IN_SOFT_LIGHTS = false;
+static const bool VOL_IN_OCCLUDING_LIGHTS = false;
+static const bool VOL_IN_LIGHT_GRIDS = true;
+static const float VOL_IN_FAR = 4000000.0;
+static const float VOL_IN_PARALLEL = 1e-12;
+static const float VOL_IN_EPSILON = 1.1920929e-7;
+static const float VOL_IN_FLAT = 1e-15;
+static const float VOL_IN_OPAQUE = 24.0;
+static const float VOL_IN_STOP = 1.5258789e-5;
+static const float VOL_IN_NO_DEPTH = 1e30;
+static const float VOL_IN_MAX_SPREAD_TANGENT = 1.7320508;
+static const uint VOL_IN_MAX_STEPS = 2000u;
+static const uint VOL_IN_REFINEMENTS = 4u;
+static const int VOL_IN_MAX_NODES = int(16384);
+static const float VOL_IN_LAST_NODE = 4194304.0;
+static const float VOL_IN_SHOWS_NORMALS = 2.0;
+static const float VOL_IN_BY_STEEPNESS = 0.0;
+static const float VOL_IN_NO_BOUND = 1e30;
+static const uint VOL_IN_TRIES = 8u;
+static const float VOL_IN_UNLIT = 1.0;
+static const float VOL_IN_UNSHADOWED = 2.0;
+static const float VOL_IN_SHADOWED = 3.0;
+static const uint VOL_IN_NO_CORNER = 4u;
+static const float VOL_IN_ROOT_THIRD = 0.5773503;
+static const uint VOL_IN_FIRST_ROUND = 9u;
+static const uint VOL_IN_ROUND = 8u;
+static const float VOL_IN_LEAST_BRIGHTNESS = 0.0625;
+static const float2 VOL_IN_RIM[8] = Constructarray8_float2_(float2(1.0, 0.0), float2(0.70710677, 0.70710677), float2(0.0, 1.0), float2(-0.70710677, 0.70710677), float2(-1.0, 0.0), float2(-0.70710677, -0.70710677), float2(0.0, -1.0), float2(0.70710677, -0.70710677));
+static const uint VOL_IN_RIM_COUNT = 8u;
+static const float VOL_IN_CLEAR = 2.0;
+static const float2 VOL_IN_PLACES[19] = Constructarray19_float2_(float2(0.0, 0.0), float2(0.4, 0.0), float2(0.2, 0.3464102), float2(-0.2, 0.3464102), float2(-0.4, 0.0), float2(-0.2, -0.3464102), float2(0.2, -0.3464102), float2(0.7727407, 0.2070552), float2(0.5656854, 0.5656854), float2(0.2070552, 0.7727407), float2(-0.2070552, 0.7727407), float2(-0.5656854, 0.5656854), float2(-0.7727407, 0.2070552), float2(-0.7727407, -0.2070552), float2(-0.5656854, -0.5656854), float2(-0.2070552, -0.7727407), float2(0.2070552, -0.7727407), float2(0.5656854, -0.5656854), float2(0.7727407, -0.2070552));
+static const uint VOL_IN_PLACE_COUNT = 19u;
+static const float VOL_IN_LACK = 0.05;
+static const float VOL_IN_BLUR = 0.3;
+static const uint VOL_IN_THE_NODE = 0u;
+static const uint VOL_IN_NO_MORE = 3u;
+static const uint VOL_IN_A_GAP = 1u;
+static const float VOL_IN_LEAST_SHARE = 1e-6;
+static const uint VOL_IN_A_WALL = 2u;
+static const uint VOL_IN_CHORD_ROUNDS = 3u;
+static const uint VOL_IN_WALL_ROUNDS = 5u;
+static const uint VOL_IN_AFTER = 1u;
+static const uint VOL_IN_WALL = 2u;
+static const float VOL_IN_WEIGHTS[5] = Constructarray5_float_(16.0, 8.0, 4.0, 2.0, 1.0);
+static const uint VOL_IN_WEIGHT_COUNT = 5u;
+static const float VOL_IN_WEIGHT_SUM = 31.0;
+static const uint VOL_IN_MOST_WALLS = 2u;
+static const uint VOL_IN_END_SLOTS = 4u;
+static const uint VOL_IN_BEFORE = 0u;
+static const float VOL_IN_THIN = 0.125;
+static const float VOL_IN_THICK = 0.5;
+static const uint2 VOL_IN_STRIDE = uint2(3242174889u, 2447445414u);
+static const uint VOL_IN_GOLDEN_STRIDE = 2654435769u;
+
+float vol_uniform_word(uint index)
+{
+    return vol_uniforms[min(uint((index >> 2u)), 6u)][min(uint((index & 3u)), 3u)];
+}
+
+float vol_curve_word(uint index_1)
+{
+    return vol_curves[min(uint((index_1 >> 2u)), 38u)][min(uint((index_1 & 3u)), 3u)];
+}
+
+uint vol_permutation_word(uint index_2)
+{
+    return vol_permutation[min(uint((index_2 >> 2u)), 63u)][min(uint((index_2 & 3u)), 3u)];
+}
+
+float vol_frame_word(uint index_3)
+{
+    return vol_frame[min(uint((index_3 >> 2u)), 18u)][min(uint((index_3 & 3u)), 3u)];
+}
+
+float vol_input_word(uint index_4)
+{
+    return vol_input[min(uint((index_4 >> 2u)), 23u)][min(uint((index_4 & 3u)), 3u)];
+}
+
+float vol_hold(float x, float low, float high)
+{
+    return min(max(x, low), high);
+}
+
+float vol_round(float x_1)
+{
+    return floor((x_1 + 0.5));
+}
+
+int naga_f2i32(float value) {
+    return int(clamp(value, -2147483600.0, 2147483500.0));
+}
+
+float vol_exp2_(float x_2)
+{
+    const float _e3 = vol_hold(x_2, -126.0, 127.0);
+    const float _e4 = vol_round(_e3);
+    float f = (_e3 - _e4);
+    float p5_ = (0.0013398875 + (f * 0.0001535336));
+    float p4_ = (0.009618437 + (f * p5_));
+    float p3_ = (0.055503324 + (f * p4_));
+    float p2_ = (0.24022648 + (f * p3_));
+    float p1_ = (0.6931472 + (f * p2_));
+    float power = (1.0 + (f * p1_));
+    uint exponent = asuint((naga_f2i32(_e4) << 23u));
+    float scaled = asfloat((asuint(power) + exponent));
+    return ((x_2 < -126.0) ? 0.0 : scaled);
+}
+
+float vol_log2_(float x_3)
+{
+    const float _e3 = vol_hold(x_3, VOL_SMALLEST, VOL_LARGEST);
+    int bits = asint(_e3);
+    int e = (asint(asuint(bits) - asuint(int(1060439283))) >> 23u);
+    float m_1 = asfloat(asint(asuint(bits) - asuint((e << 23u))));
+    float f_1 = (m_1 - 1.0);
+    float p7_ = (-0.11675641 + (f_1 * 0.06746601));
+    float p6_ = (0.11888175 + (f_1 * p7_));
+    float p5_1 = (-0.124055915 + (f_1 * p6_));
+    float p4_1 = (0.14219551 + (f_1 * p5_1));
+    float p3_1 = (-0.16667996 + (f_1 * p4_1));
+    float p2_1 = (0.20002119 + (f_1 * p3_1));
+    float p1_1 = (-0.2500001 + (f_1 * p2_1));
+    float p0_ = (0.33333313 + (f_1 * p1_1));
+    float ff = (f_1 * f_1);
+    float ln = (f_1 + (ff * ((f_1 * p0_) - 0.5)));
+    return (float(e) + (ln * VOL_LOG2_E));
+}
+
+float3 vol_quarter_turn(float x_4)
+{
+    float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
+    const float _e3 = vol_round(u_1);
+    float t_39 = (u_1 - _e3);
+    const float _e7 = vol_round((t_39 * 4.0));
+    float r = (t_39 - (_e7 * 0.25));
+    float s = (r * r);
+    float a3_1 = (-76.69787 + (s * 41.472946));
+    float a2_ = (81.6052 + (s * a3_1));
+    float a1_1 = (-41.3417 + (s * a2_));
+    float a0_1 = (6.2831855 + (s * a1_1));
+    float b3_ = (-85.442856 + (s * 59.220406));
+    float b2_2 = (64.939316 + (s * b3_));
+    float b1_2 = (-19.73921 + (s * b2_2));
+    float b0_ = (1.0 + (s * b1_2));
+    return float3((r * a0_1), b0_, _e7);
+}
+
+float vol_sin(float x_5)
+{
+    const float3 _e1 = vol_quarter_turn(x_5);
+    int k_6 = naga_f2i32(_e1.z);
+    float size = (((k_6 & int(1)) != int(0)) ? _e1.y : _e1.x);
+    return (((k_6 & int(2)) != int(0)) ? -(size) : size);
+}
+
+float vol_cos(float x_6)
+{
+    const float3 _e1 = vol_quarter_turn(x_6);
+    int k_7 = naga_f2i32(_e1.z);
+    float size_1 = (((k_7 & int(1)) != int(0)) ? _e1.x : _e1.y);
+    return (((asint(asuint(k_7) + asuint(int(1))) & int(2)) != int(0)) ? -(size_1) : size_1);
+}
+
+float vol_atan2_(float y, float x_7)
+{
+    float ax = abs(x_7);
+    float ay = abs(y);
+    float q = (min(ax, ay) / max(max(ax, ay), VOL_SMALLEST));
+    float s_1 = (q * q);
+    float p7_1 = (-0.01606848 + (s_1 * 0.002849852));
+    float p6_1 = (0.042691275 + (s_1 * p7_1));
+    float p5_2 = (-0.07504274 + (s_1 * p6_1));
+    float p4_2 = (0.106409244 + (s_1 * p5_2));
+    float p3_2 = (-0.14203642 + (s_1 * p4_2));
+    float p2_2 = (0.1999262 + (s_1 * p3_2));
+    float p1_2 = (-0.33333072 + (s_1 * p2_2));
+    float p0_1 = (1.0 + (s_1 * p1_2));
+    float base = (q * p0_1);
+    float half_ = ((ay > ax) ? (VOL_HALF_PI - base) : base);
+    float full = ((x_7 < 0.0) ? (VOL_PI - half_) : half_);
+    return ((y < 0.0) ? -(full) : full);
+}
+
+float vol_acos(float x_8)
+{
+    float a_8 = min(abs(x_8), 1.0);
+    float p6_2 = (0.006671244 + (a_8 * -0.0012628166));
+    float p5_3 = (-0.017089743 + (a_8 * p6_2));
+    float p4_3 = (0.030893007 + (a_8 * p5_3));
+    float p3_3 = (-0.0501747 + (a_8 * p4_3));
+    float p2_3 = (0.08897905 + (a_8 * p3_3));
+    float p1_3 = (-0.2145988 + (a_8 * p2_3));
+    float p0_2 = (1.5707963 + (a_8 * p1_3));
+    float angle = (sqrt((1.0 - a_8)) * p0_2);
+    return ((x_8 < 0.0) ? (VOL_PI - angle) : angle);
+}
+
+float vol_fade(float t)
+{
+    float s_2 = (t - 0.5);
+    float ss = (s_2 * s_2);
+    return (0.5 + (s_2 * (1.875 - (ss * (5.0 - (6.0 * ss))))));
+}
+
+Vol_Cell ConstructVol_Cell(int3 arg0, float3 arg1, float3 arg2) {
+    Vol_Cell ret = (Vol_Cell)0;
+    ret.corner = arg0;
+    ret.place = arg1;
+    ret.fade = arg2;
+    return ret;
+}
+
+int3 naga_f2i32(float3 value) {
+    return int3(clamp(value, -2147483600.0, 2147483500.0));
+}
+
+Vol_Cell vol_cell_of(float3 p)
+{
+    const float _e4 = vol_hold(p.x, -4194303.0, VOL_FIELD);
+    const float _e8 = vol_hold(p.y, -4194303.0, VOL_FIELD);
+    const float _e12 = vol_hold(p.z, -4194303.0, VOL_FIELD);
+    float3 held = float3(_e4, _e8, _e12);
+    float3 whole_1 = floor(held);
+    float3 place_5 = (held - whole_1);
+    const float _e17 = vol_fade(place_5.x);
+    const float _e19 = vol_fade(place_5.y);
+    const float _e21 = vol_fade(place_5.z);
+    float3 weights_6 = float3(_e17, _e19, _e21);
+    const Vol_Cell vol_cell = ConstructVol_Cell(naga_f2i32(whole_1), place_5, weights_6);
+    return vol_cell;
+}
+
+float vol_fade_slope(float t_1)
+{
+    float s_3 = (t_1 - 0.5);
+    float ss_1 = (s_3 * s_3);
+    return (1.875 - (ss_1 * (15.0 - (30.0 * ss_1))));
+}
+
+float vol_lerp(float t_2, float a, float b)
+{
+    return (a + (t_2 * (b - a)));
+}
+
+float3 vol_lerp3_(float t_3, float3 a_1, float3 b_1)
+{
+    return (a_1 + (t_3 * (b_1 - a_1)));
+}
+
+float vol_edge_value(uint code, float x_9, float y_1, float z)
+{
+    float u_2 = ((code < 8u) ? x_9 : y_1);
+    float v_3 = ((code < 4u) ? y_1 : (((code & 13u) == 12u) ? x_9 : z));
+    float signed_u = (((code & 1u) != 0u) ? -(u_2) : u_2);
+    float signed_v = (((code & 2u) != 0u) ? -(v_3) : v_3);
+    return (signed_u + signed_v);
+}
+
+float3 vol_edge_vector(uint code_1)
+{
+    float signed_u_1 = (((code_1 & 1u) != 0u) ? -1.0 : 1.0);
+    float signed_v_1 = (((code_1 & 2u) != 0u) ? -1.0 : 1.0);
+    bool wraps = ((code_1 & 13u) == 12u);
+    float x_23 = ((code_1 < 8u) ? signed_u_1 : (wraps ? signed_v_1 : 0.0));
+    float y_8 = ((code_1 < 4u) ? signed_v_1 : ((code_1 < 8u) ? 0.0 : signed_u_1));
+    float z_6 = (((code_1 < 4u) | wraps) ? 0.0 : signed_v_1);
+    return float3(x_23, y_8, z_6);
+}
+
+int vol_permuted(int i)
+{
+    const uint _e4 = vol_permutation_word(uint((i & int(255))));
+    return int(_e4);
+}
+
+uint vol_table_cell(int x_10, int y_2, int z_1)
+{
+    const int _e3 = vol_permuted(x_10);
+    const int _e5 = vol_permuted(asint(asuint(_e3) + asuint(y_2)));
+    const int _e7 = vol_permuted(asint(asuint(_e5) + asuint(z_1)));
+    return (uint(_e7) & 15u);
+}
+
+uint vol_mixed(uint joined)
+{
+    uint first_2 = ((joined ^ (joined >> 16u)) * 2146121005u);
+    return ((first_2 ^ (first_2 >> 15u)) * 2221713035u);
+}
+
+uint vol_spread(int x_11, int y_3, int z_2, uint seed)
+{
+    uint spread_xy = ((asuint(x_11) * 2376512323u) ^ (asuint(y_3) * 3625334849u));
+    uint spread_zs = ((asuint(z_2) * 3407524639u) ^ (seed * 2654435761u));
+    return (spread_xy ^ spread_zs);
+}
+
+uint vol_hash_cell(int x_12, int y_4, int z_3, uint seed_1)
+{
+    const uint _e4 = vol_spread(x_12, y_4, z_3, seed_1);
+    const uint _e5 = vol_mixed(_e4);
+    return (_e5 >> 28u);
+}
+
+uint vol_hash_word(int x_13, int y_5, int z_4, int w, uint seed_2)
+{
+    uint fourth = ((asuint(w) * 3266489909u) ^ 668265263u);
+    const uint _e10 = vol_spread(x_13, y_5, z_4, seed_2);
+    const uint _e12 = vol_mixed((_e10 ^ fourth));
+    return (_e12 ^ (_e12 >> 16u));
+}
+
+float vol_unit_number(uint word)
+{
+    return (float((word >> 8u)) * 5.9604645e-8);
+}
+
+float3 vol_unit_point(uint word_1)
+{
+    uint3 bits_1 = (uint3(word_1, (word_1 >> 10u), (word_1 >> 20u)) & (1023u).xxx);
+    return ((float3(bits_1) + (0.5).xxx) * 0.0009765625);
+}
+
+float vol_hash(float4 p_1, uint seed_3)
+{
+    const float _e5 = vol_hold(p_1.x, -16777216.0, VOL_WHOLES);
+    int x_24 = naga_f2i32(floor(_e5));
+    const float _e11 = vol_hold(p_1.y, -16777216.0, VOL_WHOLES);
+    int y_9 = naga_f2i32(floor(_e11));
+    const float _e17 = vol_hold(p_1.z, -16777216.0, VOL_WHOLES);
+    int z_7 = naga_f2i32(floor(_e17));
+    const float _e23 = vol_hold(p_1.w, -16777216.0, VOL_WHOLES);
+    int w_2 = naga_f2i32(floor(_e23));
+    const uint _e26 = vol_hash_word(x_24, y_9, z_7, w_2, seed_3);
+    const float _e27 = vol_unit_number(_e26);
+    return _e27;
+}
+
+uint vol_corner_code(Vol_Cell c, int i_1, int j, int k, uint seed_4)
+{
+    int x_25 = asint(asuint(c.corner.x) + asuint(i_1));
+    int y_10 = asint(asuint(c.corner.y) + asuint(j));
+    int z_8 = asint(asuint(c.corner.z) + asuint(k));
+    const uint _e14 = vol_hash_cell(x_25, y_10, z_8, seed_4);
+    const uint _e15 = vol_table_cell(x_25, y_10, z_8);
+    return ((seed_4 == 0u) ? _e15 : _e14);
+}
+
+float vol_corner(Vol_Cell c_1, int i_2, int j_1, int k_1, uint seed_5)
+{
+    const uint _e5 = vol_corner_code(c_1, i_2, j_1, k_1, seed_5);
+    const float _e18 = vol_edge_value(_e5, (c_1.place.x - float(i_2)), (c_1.place.y - float(j_1)), (c_1.place.z - float(k_1)));
+    return _e18;
+}
+
+float vol_perlin(float3 p_2, uint seed_6)
+{
+    const Vol_Cell _e2 = vol_cell_of(p_2);
+    float u_3 = _e2.fade.x;
+    float v_4 = _e2.fade.y;
+    float w_3 = _e2.fade.z;
+    const float _e12 = vol_corner(_e2, int(0), int(0), int(0), seed_6);
+    const float _e16 = vol_corner(_e2, int(1), int(0), int(0), seed_6);
+    const float _e17 = vol_lerp(u_3, _e12, _e16);
+    const float _e21 = vol_corner(_e2, int(0), int(1), int(0), seed_6);
+    const float _e25 = vol_corner(_e2, int(1), int(1), int(0), seed_6);
+    const float _e26 = vol_lerp(u_3, _e21, _e25);
+    const float _e30 = vol_corner(_e2, int(0), int(0), int(1), seed_6);
+    const float _e34 = vol_corner(_e2, int(1), int(0), int(1), seed_6);
+    const float _e35 = vol_lerp(u_3, _e30, _e34);
+    const float _e39 = vol_corner(_e2, int(0), int(1), int(1), seed_6);
+    const float _e43 = vol_corner(_e2, int(1), int(1), int(1), seed_6);
+    const float _e44 = vol_lerp(u_3, _e39, _e43);
+    const float _e45 = vol_lerp(v_4, _e17, _e26);
+    const float _e46 = vol_lerp(v_4, _e35, _e44);
+    const float _e47 = vol_lerp(w_3, _e45, _e46);
+    return _e47;
+}
+
+Vol_Blend ConstructVol_Blend(float arg0, float3 arg1, float3 arg2) {
+    Vol_Blend ret = (Vol_Blend)0;
+    ret.value = arg0;
+    ret.gradient = arg1;
+    ret.slope = arg2;
+    return ret;
+}
+
+Vol_Blend vol_corner_blend(Vol_Cell c_2, int i_3, int j_2, int k_2, uint seed_7)
+{
+    const uint _e5 = vol_corner_code(c_2, i_3, j_2, k_2, seed_7);
+    const float _e18 = vol_edge_value(_e5, (c_2.place.x - float(i_3)), (c_2.place.y - float(j_2)), (c_2.place.z - float(k_2)));
+    const float3 _e19 = vol_edge_vector(_e5);
+    const Vol_Blend vol_blend_1 = ConstructVol_Blend(_e18, _e19, float3(0.0, 0.0, 0.0));
+    return vol_blend_1;
+}
+
+Vol_Blend vol_blend(bool3 axis, float t_4, Vol_Blend a_2, Vol_Blend b_2)
+{
+    float rise = (b_2.value - a_2.value);
+    const float3 _e9 = vol_lerp3_(t_4, a_2.slope, b_2.slope);
+    float3 slope_7 = (axis ? float3(rise, rise, rise) : _e9);
+    const float3 _e17 = vol_lerp3_(t_4, a_2.gradient, b_2.gradient);
+    const Vol_Blend vol_blend_2 = ConstructVol_Blend((a_2.value + (t_4 * rise)), _e17, slope_7);
+    return vol_blend_2;
+}
+
+float4 vol_perlin_gradient(float3 p_3, uint seed_8)
+{
+    const Vol_Cell _e2 = vol_cell_of(p_3);
+    float u_4 = _e2.fade.x;
+    float v_5 = _e2.fade.y;
+    float w_4 = _e2.fade.z;
+    bool3 along_x = bool3(true, false, false);
+    bool3 along_y = bool3(false, true, false);
+    bool3 along_z = bool3(false, false, true);
+    const Vol_Blend _e24 = vol_corner_blend(_e2, int(0), int(0), int(0), seed_8);
+    const Vol_Blend _e28 = vol_corner_blend(_e2, int(1), int(0), int(0), seed_8);
+    const Vol_Blend _e32 = vol_corner_blend(_e2, int(0), int(1), int(0), seed_8);
+    const Vol_Blend _e36 = vol_corner_blend(_e2, int(1), int(1), int(0), seed_8);
+    const Vol_Blend _e40 = vol_corner_blend(_e2, int(0), int(0), int(1), seed_8);
+    const Vol_Blend _e44 = vol_corner_blend(_e2, int(1), int(0), int(1), seed_8);
+    const Vol_Blend _e48 = vol_corner_blend(_e2, int(0), int(1), int(1), seed_8);
+    const Vol_Blend _e52 = vol_corner_blend(_e2, int(1), int(1), int(1), seed_8);
+    const Vol_Blend _e53 = vol_blend(along_x, u_4, _e24, _e28);
+    const Vol_Blend _e54 = vol_blend(along_x, u_4, _e32, _e36);
+    const Vol_Blend _e55 = vol_blend(along_x, u_4, _e40, _e44);
+    const Vol_Blend _e56 = vol_blend(along_x, u_4, _e48, _e52);
+    const Vol_Blend _e57 = vol_blend(along_y, v_5, _e53, _e54);
+    const Vol_Blend _e58 = vol_blend(along_y, v_5, _e55, _e56);
+    const Vol_Blend _e59 = vol_blend(along_z, w_4, _e57, _e58);
+    const float _e64 = vol_fade_slope(_e2.place.x);
+    float dx = (_e59.gradient.x + (_e64 * _e59.slope.x));
+    const float _e73 = vol_fade_slope(_e2.place.y);
+    float dy = (_e59.gradient.y + (_e73 * _e59.slope.y));
+    const float _e82 = vol_fade_slope(_e2.place.z);
+    float dz = (_e59.gradient.z + (_e82 * _e59.slope.z));
+    return float4(_e59.value, dx, dy, dz);
+}
+
+int vol_octave_count(float octaves)
+{
+    const float _e3 = vol_hold(octaves, 0.0, VOL_OCTAVES);
+    return naga_f2i32(floor(_e3));
+}
+
+float vol_next_octave(float product, float factor)
+{
+    const float _e5 = vol_hold((product * factor), -1099511600000.0, VOL_PRODUCT);
+    return _e5;
+}
+
+float vol_fbm(float3 p_4, float octaves_1, float lacunarity, float gain, uint seed_9)
+{
+    float sum = 0.0;
+    float amplitude = 1.0;
+    float frequency = 1.0;
+    int k_3 = int(0);
+
+    const int _e11 = vol_octave_count(octaves_1);
+    uint2 loop_bound = uint2(4294967295u, 4294967295u);
+    bool loop_init = true;
+    while(true) {
+        if (all(loop_bound == uint2(0u, 0u))) { break; }
+        loop_bound -= uint2(loop_bound.y == 0u, 1u);
+        if (!loop_init) {
+            int _e35 = k_3;
+            k_3 = asint(asuint(_e35) + asuint(int(1)));
+        }
+        loop_init = false;
+        int _e14 = k_3;
+        if ((_e14 < _e11)) {
+        } else {
+            break;
+        }
+        {
+            float _e17 = frequency;
+            float _e20 = frequency;
+            float _e23 = frequency;
+            float3 q_1 = float3((p_4.x * _e17), (p_4.y * _e20), (p_4.z * _e23));
+            float _e26 = sum;
+            float _e27 = amplitude;
+            const float _e28 = vol_perlin(q_1, seed_9);
+            sum = (_e26 + (_e27 * _e28));
+            float _e31 = amplitude;
+            const float _e32 = vol_next_octave(_e31, gain);
+            amplitude = _e32;
+            float _e33 = frequency;
+            const float _e34 = vol_next_octave(_e33, lacunarity);
+            frequency = _e34;
+        }
+    }
+    float _e38 = sum;
+    return _e38;
+}
+
+float4 vol_fbm_gradient(float3 p_5, float octaves_2, float lacunarity_1, float gain_1, uint seed_10)
+{
+    float4 sum_1 = float4(0.0, 0.0, 0.0, 0.0);
+    float amplitude_1 = 1.0;
+    float frequency_1 = 1.0;
+    int k_4 = int(0);
+
+    const int _e15 = vol_octave_count(octaves_2);
+    uint2 loop_bound_1 = uint2(4294967295u, 4294967295u);
+    bool loop_init_1 = true;
+    while(true) {
+        if (all(loop_bound_1 == uint2(0u, 0u))) { break; }
+        loop_bound_1 -= uint2(loop_bound_1.y == 0u, 1u);
+        if (!loop_init_1) {
+            int _e43 = k_4;
+            k_4 = asint(asuint(_e43) + asuint(int(1)));
+        }
+        loop_init_1 = false;
+        int _e18 = k_4;
+        if ((_e18 < _e15)) {
+        } else {
+            break;
+        }
+        {
+            float _e21 = frequency_1;
+            float _e24 = frequency_1;
+            float _e27 = frequency_1;
+            float3 q_2 = float3((p_5.x * _e21), (p_5.y * _e24), (p_5.z * _e27));
+            const float4 _e30 = vol_perlin_gradient(q_2, seed_10);
+            float _e31 = amplitude_1;
+            float _e32 = frequency_1;
+            float steepness = (_e31 * _e32);
+            float _e34 = amplitude_1;
+            float4 weights_7 = float4(_e34, steepness, steepness, steepness);
+            float4 _e36 = sum_1;
+            sum_1 = (_e36 + (weights_7 * _e30));
+            float _e39 = amplitude_1;
+            const float _e40 = vol_next_octave(_e39, gain_1);
+            amplitude_1 = _e40;
+            float _e41 = frequency_1;
+            const float _e42 = vol_next_octave(_e41, lacunarity_1);
+            frequency_1 = _e42;
+        }
+    }
+    float4 _e46 = sum_1;
+    return _e46;
+}
+
+float vol_dot(float3 a_3, float3 b_3)
+{
+    return (((a_3.x * b_3.x) + (a_3.y * b_3.y)) + (a_3.z * b_3.z));
+}
+
+float3 vol_cross(float3 a_4, float3 b_4)
+{
+    return float3(((a_4.y * b_4.z) - (a_4.z * b_4.y)), ((a_4.z * b_4.x) - (a_4.x * b_4.z)), ((a_4.x * b_4.y) - (a_4.y * b_4.x)));
+}
+
+float3 vol_curve_vector(uint word_2)
+{
+    const float _e1 = vol_curve_word(word_2);
+    const float _e4 = vol_curve_word((word_2 + 1u));
+    const float _e7 = vol_curve_word((word_2 + 2u));
+    return float3(_e1, _e4, _e7);
+}
+
+float3 vol_held_point(float3 p_6)
+{
+    const float _e4 = vol_hold(p_6.x, -100000000.0, VOL_REACH);
+    const float _e8 = vol_hold(p_6.y, -100000000.0, VOL_REACH);
+    const float _e12 = vol_hold(p_6.z, -100000000.0, VOL_REACH);
+    return float3(_e4, _e8, _e12);
+}
+
+float3 vol_from_point(float3 p_7, uint word_3)
+{
+    const float3 _e2 = vol_curve_vector(word_3);
+    const float3 _e6 = vol_curve_vector((word_3 + 3u));
+    return ((_e2 - p_7) + _e6);
+}
+
+float3 vol_reach(float3 w_1, float3 b1_, float3 b2_, float t_5)
+{
+    return (w_1 + (t_5 * ((2.0 * b1_) + (t_5 * b2_))));
+}
+
+float3 vol_end_from_point(float3 p_8, uint word_4)
+{
+    const float3 _e4 = vol_curve_vector((word_4 + 40u));
+    const float3 _e8 = vol_curve_vector((word_4 + 43u));
+    return ((_e4 - p_8) + _e8);
+}
+
+float3 vol_offset_at(float3 p_9, uint word_5, float3 b1_1, float3 b2_1, float t_6)
+{
+    const float3 _e5 = vol_from_point(p_9, word_5);
+    const float3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
+    float back = (1.0 - t_6);
+    const float3 _e9 = vol_end_from_point(p_9, word_5);
+    float3 before_9 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
+    return ((t_6 > 0.5) ? before_9 : _e6);
+}
+
+uint naga_div(uint lhs, uint rhs) {
+    return lhs / (rhs == 0u ? 1u : rhs);
+}
+
+float vol_rough_cube_root(float x_14)
+{
+    return asfloat((naga_div(asuint(x_14), 3u) + 709921077u));
+}
+
+float vol_depressed_step(float u, float gap3_, float m, float k_5)
+{
+    float value_4 = (((((u + gap3_) * u) + m) * u) - k_5);
+    float slope_8 = ((((3.0 * u) + (2.0 * gap3_)) * u) + m);
+    return max((u - (value_4 / max(slope_8, VOL_TINY))), 0.0);
+}
+
+float vol_polish_step(float t_7, float a3_, float a2x3_, float a1_, float a0_, float low_1)
+{
+    float value_5 = ((((((a3_ * t_7) + a2x3_) * t_7) + a1_) * t_7) + a0_);
+    float slope_9 = (((((3.0 * a3_) * t_7) + (2.0 * a2x3_)) * t_7) + a1_);
+    const float _e25 = vol_hold((t_7 - (value_5 / max(slope_9, VOL_TINY))), low_1, 1.0);
+    return _e25;
+}
+
+Vol_Inner ConstructVol_Inner(float arg0, float arg1, bool arg2, float arg3, bool arg4) {
+    Vol_Inner ret = (Vol_Inner)0;
+    ret.t = arg0;
+    ret.dist_sq = arg1;
+    ret.start_is_least = arg2;
+    ret.start_sq = arg3;
+    ret.dips = arg4;
+    return ret;
+}
+
+Vol_Inner vol_inner(float3 p_10, uint word_6)
+{
+    const float3 _e4 = vol_curve_vector((word_6 + 6u));
+    const float3 _e7 = vol_curve_vector((word_6 + 9u));
+    const float _e10 = vol_curve_word((word_6 + 27u));
+    const float _e13 = vol_curve_word((word_6 + 28u));
+    const float3 _e14 = vol_from_point(p_10, word_6);
+    const float _e17 = vol_curve_word((word_6 + 24u));
+    const float _e20 = vol_curve_word((word_6 + 25u));
+    float a2x3_1 = (3.0 * _e20);
+    const float _e25 = vol_curve_word((word_6 + 26u));
+    const float _e28 = vol_dot(_e14, _e7);
+    float a1_2 = ((2.0 * _e25) + _e28);
+    const float _e30 = vol_dot(_e14, _e4);
+    float slope_10 = ((a1_2 + (a2x3_1 * _e10)) * _e13);
+    float half_gap = sqrt(max((-(slope_10) * 0.33333334), 0.0));
+    float m_2 = max(slope_10, 0.0);
+    float e_1 = (_e10 + half_gap);
+    float at_e = (((((((_e17 * e_1) + a2x3_1) * e_1) + a1_2) * e_1) + _e30) * _e13);
+    float k_8 = max(-(at_e), 0.0);
+    float gap3_1 = (3.0 * half_gap);
+    float tiny = ((1e-12 * k_8) + VOL_TINY);
+    float by_square = sqrt((k_8 / max(gap3_1, tiny)));
+    float by_line = (k_8 / max(m_2, tiny));
+    const float _e64 = vol_rough_cube_root(k_8);
+    float u0_ = min(min(_e64, by_square), by_line);
+    const float _e67 = vol_depressed_step(u0_, gap3_1, m_2, k_8);
+    const float _e68 = vol_depressed_step(_e67, gap3_1, m_2, k_8);
+    bool is_flat = (_e13 == 0.0);
+    const float _e73 = vol_hold(e_1, 0.0, 1.0);
+    float low_2 = (is_flat ? 0.0 : _e73);
+    const float _e78 = vol_hold((e_1 + _e68), low_2, 1.0);
+    float t0_ = (is_flat ? 0.5 : _e78);
+    const float _e81 = vol_polish_step(t0_, _e17, a2x3_1, a1_2, _e30, low_2);
+    const float _e82 = vol_polish_step(_e81, _e17, a2x3_1, a1_2, _e30, low_2);
+    const float3 _e83 = vol_reach(_e14, _e4, _e7, _e82);
+    bool dips = ((!(is_flat) & (k_8 > 0.0)) & ((e_1 > 0.0) & (e_1 < 1.0)));
+    bool start_is_least = ((_e30 > 0.0) | ((_e30 == 0.0) & (a1_2 >= 0.0)));
+    const float _e102 = vol_dot(_e83, _e83);
+    const float _e103 = vol_dot(_e14, _e14);
+    const Vol_Inner vol_inner_1 = ConstructVol_Inner(_e82, _e102, start_is_least, _e103, dips);
+    return vol_inner_1;
+}
+
+Vol_Foot ConstructVol_Foot(float arg0, float arg1) {
+    Vol_Foot ret = (Vol_Foot)0;
+    ret.t = arg0;
+    ret.dist_sq = arg1;
+    return ret;
+}
+
+Vol_Foot vol_foot(float3 p_11, uint word_7)
+{
+    const Vol_Inner _e2 = vol_inner(p_11, word_7);
+    bool start_wins = (_e2.start_is_least & (_e2.start_sq <= _e2.dist_sq));
+    const Vol_Foot vol_foot_1 = ConstructVol_Foot((start_wins ? 0.0 : _e2.t), (start_wins ? _e2.start_sq : _e2.dist_sq));
+    return vol_foot_1;
+}
+
+bool vol_at_first(uint word_8, float t_8)
+{
+    const float _e4 = vol_curve_word((word_8 + 32u));
+    return ((_e4 * (t_8 - 0.5)) <= -0.5);
+}
+
+bool vol_at_last(uint word_9, float t_9)
+{
+    const float _e4 = vol_curve_word((word_9 + 32u));
+    return ((_e4 * (t_9 - 0.5)) >= 0.5);
+}
+
+Vol_Search ConstructVol_Search(float arg0, float arg1, uint arg2, bool arg3) {
+    Vol_Search ret = (Vol_Search)0;
+    ret.dist_sq = arg0;
+    ret.t = arg1;
+    ret.piece = arg2;
+    ret.left_at_last = arg3;
+    return ret;
+}
+
+Vol_Search vol_visit(Vol_Search before, float3 p_12, uint word_10, uint index_5)
+{
+    const Vol_Foot _e4 = vol_foot(p_12, word_10);
+    const bool _e6 = vol_at_last(word_10, _e4.t);
+    const float _e9 = vol_curve_word((word_10 + 38u));
+    bool defers = (_e6 & (_e9 == 1.0));
+    const bool _e14 = vol_at_first(word_10, _e4.t);
+    const float _e17 = vol_curve_word((word_10 + 37u));
+    bool redundant = ((_e14 & (_e17 == 1.0)) & !(before.left_at_last));
+    bool wins = (((_e4.dist_sq < before.dist_sq) & !(defers)) & !(redundant));
+    const Vol_Search vol_search_1 = ConstructVol_Search((wins ? _e4.dist_sq : before.dist_sq), (wins ? _e4.t : before.t), (wins ? index_5 : before.piece), _e6);
+    return vol_search_1;
+}
+
+float vol_length_to(uint word_11, float t_10)
+{
+    const float _e4 = vol_curve_word((word_11 + 24u));
+    const float _e7 = vol_curve_word((word_11 + 26u));
+    const float _e10 = vol_curve_word((word_11 + 33u));
+    const float _e14 = vol_curve_word((word_11 + 25u));
+    float rate = ((_e4 * t_10) + (2.0 * _e14));
+    float speed0_ = sqrt(_e7);
+    float speed = sqrt(((rate * t_10) + _e7));
+    float rise_1 = ((t_10 * rate) / max((speed + speed0_), VOL_TINY));
+    const float _e32 = vol_curve_word((word_11 + 35u));
+    float z_9 = ((_e10 * ((_e10 * t_10) + rise_1)) / _e32);
+    float y_11 = (z_9 / (2.0 + z_9));
+    float yy = (y_11 * y_11);
+    float s3_ = (0.14285715 + (yy * 0.11111111));
+    float s2_ = (0.2 + (yy * s3_));
+    float s1_ = (0.33333334 + (yy * s2_));
+    float series = ((2.0 * y_11) * (1.0 + (yy * s1_)));
+    const float _e56 = vol_log2_((1.0 + z_9));
+    float logarithm = (_e56 * VOL_LN_2_);
+    float log_term = ((z_9 < 0.414) ? series : logarithm);
+    const float _e65 = vol_curve_word((word_11 + 27u));
+    const float _e70 = vol_curve_word((word_11 + 34u));
+    float bent = ((t_10 * speed) + ((-(_e65) * rise_1) + (_e70 * log_term)));
+    const float _e79 = vol_curve_word((word_11 + 28u));
+    return ((_e79 == 0.0) ? ((2.0 * speed0_) * t_10) : bent);
+}
+
+Vol_CurvePoint ConstructVol_CurvePoint(float arg0, float arg1, float arg2, float arg3, float arg4, float arg5, float arg6, float arg7) {
+    Vol_CurvePoint ret = (Vol_CurvePoint)0;
+    ret.t = arg0;
+    ret.arc_length = arg1;
+    ret.curve_length = arg2;
+    ret.x = arg3;
+    ret.y = arg4;
+    ret.distance_ = arg5;
+    ret.overshoot = arg6;
+    ret.stretch = arg7;
+    return ret;
+}
+
+Vol_CurvePoint vol_describe(float3 p_13, uint word_12, float t_11)
+{
+    const float3 _e5 = vol_curve_vector((word_12 + 6u));
+    const float3 _e8 = vol_curve_vector((word_12 + 9u));
+    const float3 _e11 = vol_curve_vector((word_12 + 12u));
+    const float3 _e14 = vol_curve_vector((word_12 + 15u));
+    const float3 _e17 = vol_curve_vector((word_12 + 18u));
+    const float3 _e20 = vol_curve_vector((word_12 + 21u));
+    const float _e23 = vol_curve_word((word_12 + 30u));
+    const float _e26 = vol_curve_word((word_12 + 32u));
+    const float _e29 = vol_curve_word((word_12 + 39u));
+    const float3 _e30 = vol_offset_at(p_13, word_12, _e5, _e8, t_11);
+    float3 v_6 = (_e5 + (t_11 * _e8));
+    const float _e33 = vol_dot(v_6, v_6);
+    float vv = max(_e33, VOL_TINY);
+    const float _e38 = vol_curve_word((word_12 + 36u));
+    bool is_straight = (_e38 != 0.0);
+    float per_speed = (_e26 / sqrt(vv));
+    float3 tangent_1 = (is_straight ? _e11 : (v_6 * per_speed));
+    float3 sum_5 = (_e11 + tangent_1);
+    const float _e46 = vol_dot(_e30, sum_5);
+    const float _e47 = vol_dot(_e11, sum_5);
+    float turn = (_e46 / _e47);
+    const float _e49 = vol_dot(_e14, tangent_1);
+    const float _e51 = vol_dot(_e30, _e14);
+    float x_26 = ((_e49 * turn) - _e51);
+    const float _e53 = vol_dot(_e17, tangent_1);
+    const float _e55 = vol_dot(_e30, _e17);
+    float y_12 = ((_e53 * turn) - _e55);
+    const float _e57 = vol_dot(_e30, tangent_1);
+    float ahead_2 = -(_e57);
+    const bool _e59 = vol_at_first(word_12, t_11);
+    const float _e62 = vol_curve_word((word_12 + 37u));
+    bool starts = (_e59 & (_e62 == 0.0));
+    const bool _e66 = vol_at_last(word_12, t_11);
+    const float _e72 = vol_curve_word((word_12 + 38u));
+    bool ends_4 = ((_e66 | (_e23 == 0.0)) & (_e72 == 0.0));
+    float behind_first = (starts ? -(ahead_2) : 0.0);
+    float beyond_last = (ends_4 ? ahead_2 : 0.0);
+    const float3 _e81 = vol_cross(_e20, v_6);
+    const float _e82 = vol_dot(_e30, _e81);
+    float bent_1 = (_e82 / vv);
+    float stretch_2 = (1.0 + (bent_1 / (2.0 * vv)));
+    const float _e91 = vol_curve_word((word_12 + 31u));
+    const float _e92 = vol_length_to(word_12, t_11);
+    float s_4 = (_e91 + (_e26 * _e92));
+    const float _e97 = vol_curve_word((word_12 + 29u));
+    const float _e102 = vol_hold((_e97 + (_e23 * t_11)), 0.0, 1.0);
+    const float _e104 = vol_hold(s_4, 0.0, _e29);
+    const float _e105 = vol_dot(_e30, _e30);
+    const float _e112 = vol_hold(stretch_2, 0.0, VOL_STRETCH);
+    const Vol_CurvePoint vol_curvepoint = ConstructVol_CurvePoint(_e102, _e104, _e29, x_26, y_12, sqrt(_e105), max(max(behind_first, beyond_last), 0.0), _e112);
+    return vol_curvepoint;
+}
+
+Vol_CurveSlopes ConstructVol_CurveSlopes(float3 arg0, float3 arg1, float arg2, float arg3) {
+    Vol_CurveSlopes ret = (Vol_CurveSlopes)0;
+    ret.direction = arg0;
+    ret.tangent = arg1;
+    ret.rate = arg2;
+    ret.slide = arg3;
+    return ret;
+}
+
+Vol_CurveSlopes vol_slopes(float3 p_14, uint word_13, float t_12)
+{
+    const float3 _e5 = vol_curve_vector((word_13 + 6u));
+    const float3 _e8 = vol_curve_vector((word_13 + 9u));
+    const float3 _e11 = vol_curve_vector((word_13 + 12u));
+    const float3 _e14 = vol_curve_vector((word_13 + 21u));
+    const float _e17 = vol_curve_word((word_13 + 30u));
+    const float3 _e18 = vol_from_point(p_14, word_13);
+    const float3 _e19 = vol_reach(_e18, _e5, _e8, t_12);
+    float3 v_7 = (_e5 + (t_12 * _e8));
+    const float _e22 = vol_dot(v_7, v_7);
+    float vv_1 = max(_e22, VOL_TINY);
+    const float _e27 = vol_curve_word((word_13 + 36u));
+    bool is_straight_1 = (_e27 != 0.0);
+    float speed_1 = sqrt(vv_1);
+    const float _e33 = vol_curve_word((word_13 + 32u));
+    float per_speed_1 = (_e33 / speed_1);
+    float3 tangent_2 = (is_straight_1 ? _e11 : (v_7 * per_speed_1));
+    const float _e37 = vol_dot(_e19, _e19);
+    float distance_12 = sqrt(_e37);
+    float per_distance = ((distance_12 > 0.0) ? (-1.0 / max(distance_12, VOL_TINY)) : 0.0);
+    bool at_end = ((t_12 == 0.0) | (t_12 == 1.0));
+    const float _e52 = vol_dot(_e19, tangent_2);
+    bool held_1 = (at_end & (abs(_e52) > (VOL_LEAN * distance_12)));
+    const float3 _e58 = vol_cross(_e14, v_7);
+    const float _e59 = vol_dot(_e19, _e58);
+    float bent_2 = (_e59 / vv_1);
+    float stretch_3 = max((1.0 + (bent_2 / (2.0 * vv_1))), VOL_LEAST_STRETCH);
+    const Vol_CurveSlopes vol_curveslopes = ConstructVol_CurveSlopes((_e19 * per_distance), tangent_2, min((abs(_e17) / (2.0 * speed_1)), VOL_LARGEST_RATE), ((held_1 | (_e17 == 0.0)) ? 0.0 : (1.0 / stretch_3)));
+    return vol_curveslopes;
+}
+
+Vol_Search vol_search(float3 p_15, Vol_Curve curve)
+{
+    Vol_Search search = ConstructVol_Search(3.4028235e38, 0.0, 0u, false);
+    uint index_6 = 0u;
+
+    uint2 loop_bound_2 = uint2(4294967295u, 4294967295u);
+    bool loop_init_2 = true;
+    while(true) {
+        if (all(loop_bound_2 == uint2(0u, 0u))) { break; }
+        loop_bound_2 -= uint2(loop_bound_2.y == 0u, 1u);
+        if (!loop_init_2) {
+            uint _e21 = index_6;
+            index_6 = (_e21 + 1u);
+        }
+        loop_init_2 = false;
+        uint _e10 = index_6;
+        if ((_e10 < curve.count)) {
+        } else {
+            break;
+        }
+        {
+            Vol_Search _e13 = search;
+            uint _e15 = index_6;
+            uint _e19 = index_6;
+            const Vol_Search _e20 = vol_visit(_e13, p_15, ((curve.first + _e15) * VOL_PIECE_WORDS), _e19);
+            search = _e20;
+        }
+    }
+    Vol_Search _e24 = search;
+    const Vol_Search vol_search_2 = _e24;
+    return vol_search_2;
+}
+
+Vol_CurveSlopes vol_closest_gradient(float3 point_, Vol_Curve curve_1)
+{
+    const float3 _e2 = vol_held_point(point_);
+    const Vol_Search _e3 = vol_search(_e2, curve_1);
+    if ((curve_1.count == 0u)) {
+        const Vol_CurveSlopes vol_curveslopes_1 = ConstructVol_CurveSlopes(float3(1.0, 0.0, 0.0), float3(0.0, 0.0, 1.0), 0.0, 0.0);
+        return vol_curveslopes_1;
+    }
+    const Vol_CurveSlopes _e24 = vol_slopes(_e2, ((curve_1.first + _e3.piece) * VOL_PIECE_WORDS), _e3.t);
+    const Vol_CurveSlopes vol_curveslopes_2 = _e24;
+    return vol_curveslopes_2;
+}
+
+Vol_CurvePoint vol_closest(float3 point_1, Vol_Curve curve_2)
+{
+    const float3 _e2 = vol_held_point(point_1);
+    const Vol_Search _e3 = vol_search(_e2, curve_2);
+    if ((curve_2.count == 0u)) {
+        const Vol_CurvePoint vol_curvepoint_1 = ConstructVol_CurvePoint(0.0, 0.0, 0.0, 1e18, 0.0, 1e18, 0.0, 1.0);
+        return vol_curvepoint_1;
+    }
+    const Vol_CurvePoint _e22 = vol_describe(_e2, ((curve_2.first + _e3.piece) * VOL_PIECE_WORDS), _e3.t);
+    const Vol_CurvePoint vol_curvepoint_2 = _e22;
+    return vol_curvepoint_2;
+}
+
+float2 vol_f0_radius_slope(float x0_, float x1_)
+{
+    float v3_ = (x0_ + x0_);
+    float v4_ = (0.52 * v3_);
+    return float2(v4_, 0.0);
+}
+
+float vol_f1_radius(float x0_1, float x1_1)
+{
+    float v3_1 = (x0_1 * x0_1);
+    float v4_1 = (v3_1 * 0.52);
+    float v5_ = (0.08 + v4_1);
+    return v5_;
+}
+
+Vol_Curve ConstructVol_Curve(uint arg0, uint arg1) {
+    Vol_Curve ret = (Vol_Curve)0;
+    ret.first = arg0;
+    ret.count = arg1;
+    return ret;
+}
+
+float vol_f2_region_cloud(float x0_2, float x1_2, float x2_)
+{
+    const Vol_CurvePoint _e16 = vol_closest(float3(x0_2, x1_2, x2_), ConstructVol_Curve(0u, 2u));
+    float v13_ = _e16.t;
+    float v14_ = _e16.arc_length;
+    float v15_ = _e16.curve_length;
+    float v16_ = _e16.distance_;
+    float v17_ = _e16.overshoot;
+    float v18_ = (v13_ * v13_);
+    float v19_ = (v18_ * 0.52);
+    float v20_ = (0.08 + v19_);
+    float v22_ = ((v20_ > 1e-6) ? v20_ : 1e-6);
+    float v23_ = (v16_ - v22_);
+    float v24_ = (v16_ - 0.6);
+    float v25_ = (v23_ * 0.79870445);
+    float v27_ = ((v25_ < 0.5264106) ? v25_ : 0.5264106);
+    float v28_ = ((v24_ > v27_) ? v24_ : v27_);
+    bool v29_ = (v16_ < 1.1264106);
+    float v30_ = (v29_ ? v28_ : v24_);
+    float v31_ = (1000000000000000.0 - v16_);
+    float v32_ = ((v17_ < v31_) ? v17_ : v31_);
+    float v33_ = (v15_ - v14_);
+    float v34_ = ((v14_ < v33_) ? v14_ : v33_);
+    float v35_ = (v34_ * 0.69090724);
+    float v36_ = ((v35_ < 1.5609045) ? v35_ : 1.5609045);
+    float v37_ = -(v36_);
+    bool v38_ = (0.0 < v17_);
+    float v39_ = (v38_ ? v32_ : v37_);
+    float v40_ = ((v30_ > v39_) ? v30_ : v39_);
+    return v40_;
+}
+
+Vol_Out10_ ConstructVol_Out10_(float arg0, float arg1, float arg2, float arg3, float arg4, float arg5, float arg6, float arg7, float arg8, float arg9) {
+    Vol_Out10_ ret = (Vol_Out10_)0;
+    ret.v0_ = arg0;
+    ret.v1_ = arg1;
+    ret.v2_ = arg2;
+    ret.v3_ = arg3;
+    ret.v4_ = arg4;
+    ret.v5_ = arg5;
+    ret.v6_ = arg6;
+    ret.v7_ = arg7;
+    ret.v8_ = arg8;
+    ret.v9_ = arg9;
+    return ret;
+}
+
+Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1)
+{
+    const Vol_CurvePoint _e13 = vol_closest(float3(x0_3, x1_3, x2_1), ConstructVol_Curve(0u, 2u));
+    float v10_ = _e13.t;
+    float v11_ = _e13.arc_length;
+    float v12_ = _e13.x;
+    float v13_1 = _e13.y;
+    float v14_1 = (v10_ * v10_);
+    float v15_1 = (v14_1 * 0.52);
+    float v16_1 = (0.08 + v15_1);
+    float v18_1 = ((v16_1 > 1e-6) ? v16_1 : 1e-6);
+    float v20_1 = (5.0265484 * v10_);
+    float v22_1 = (v20_1 - 0.0);
+    const float _e28 = vol_sin(v22_1);
+    const float _e29 = vol_cos(v22_1);
+    float v25_1 = (_e29 * v12_);
+    float v26_ = (_e28 * v13_1);
+    float v27_1 = (_e28 * v12_);
+    float v28_1 = (_e29 * v13_1);
+    float v29_1 = (v25_1 - v26_);
+    float v30_1 = (v27_1 + v28_1);
+    float v31_1 = (v29_1 / v18_1);
+    float v32_1 = (v30_1 / v18_1);
+    float v35_1 = (v31_1 * 3.0);
+    float v36_1 = (v11_ * 6.0);
+    float v37_1 = (v32_1 * 3.0);
+    float v38_1 = (v36_1 - 0.0);
+    const float _e49 = vol_fbm(float3(v35_1, v38_1, v37_1), 5.0, 2.0, 0.5, 0u);
+    float v44_ = (_e49 + 0.15);
+    float v45_ = (25.0 * v44_);
+    const Vol_Out10_ vol_out10_ = ConstructVol_Out10_(v45_, 0.7912979, 0.8307699, 1.0, 0.94129795, 0.9807699, 1.15, 0.0, 0.0, 0.0);
+    return vol_out10_;
+}
+
+float4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2)
+{
+    const Vol_CurvePoint _e11 = vol_closest(float3(x0_4, x1_4, x2_2), ConstructVol_Curve(0u, 2u));
+    float v8_ = _e11.t;
+    float v9_ = _e11.arc_length;
+    float v10_1 = _e11.x;
+    float v11_1 = _e11.y;
+    float v12_1 = (v8_ * v8_);
+    float v13_2 = (v12_1 * 0.52);
+    float v14_2 = (0.08 + v13_2);
+    float v16_2 = ((v14_2 > 1e-6) ? v14_2 : 1e-6);
+    float v18_2 = (5.0265484 * v8_);
+    float v20_2 = (v18_2 - 0.0);
+    const float _e26 = vol_sin(v20_2);
+    const float _e27 = vol_cos(v20_2);
+    float v23_1 = (_e27 * v10_1);
+    float v24_1 = (_e26 * v11_1);
+    float v25_2 = (_e26 * v10_1);
+    float v26_1 = (_e27 * v11_1);
+    float v27_2 = (v23_1 - v24_1);
+    float v28_2 = (v25_2 + v26_1);
+    float v29_2 = (v27_2 / v16_2);
+    float v30_2 = (v28_2 / v16_2);
+    float v33_1 = (v29_2 * 3.0);
+    float v34_1 = (v9_ * 6.0);
+    float v35_2 = (v30_2 * 3.0);
+    float v36_2 = (v34_1 - 0.0);
+    const float _e47 = vol_fbm(float3(v33_1, v36_2, v35_2), 5.0, 2.0, 0.5, 0u);
+    float v42_ = (_e47 + 0.15);
+    float v43_ = (25.0 * v42_);
+    return float4(v43_, 0.94129795, 0.9807699, 1.15);
+}
+
+float vol_f5_phase_cloud(float x0_5, float x1_5)
+{
+    float v3_2 = (0.6 * x0_5);
+    float v4_2 = (0.49 + v3_2);
+    float v5_1 = sqrt(((v4_2 > 0.0) ? v4_2 : 0.0));
+    float v6_ = (v4_2 * v5_1);
+    float v8_1 = (12.566371 * v6_);
+    float v10_2 = (0.91 / v8_1);
+    return v10_2;
+}
+
+float vol_f6_radius(float x0_6, float x1_6)
+{
+    float v3_3 = (x0_6 * x0_6);
+    float v4_3 = (v3_3 * 0.52);
+    float v5_2 = (0.08 + v4_3);
+    return v5_2;
+}
+
+float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3)
+{
+    const Vol_CurvePoint _e18 = vol_closest(float3(x0_7, x1_7, x2_3), ConstructVol_Curve(0u, 2u));
+    float v15_2 = _e18.t;
+    float v16_3 = _e18.arc_length;
+    float v17_1 = _e18.curve_length;
+    float v18_3 = _e18.x;
+    float v19_1 = _e18.y;
+    float v20_3 = _e18.distance_;
+    float v21_ = _e18.overshoot;
+    float v22_2 = (v15_2 * v15_2);
+    float v23_2 = (v22_2 * 0.52);
+    float v24_2 = (0.08 + v23_2);
+    float v26_2 = ((v24_2 > 1e-6) ? v24_2 : 1e-6);
+    float v28_3 = (5.0265484 * v15_2);
+    float v30_3 = (v28_3 - 0.0);
+    const float _e36 = vol_sin(v30_3);
+    const float _e37 = vol_cos(v30_3);
+    float v33_2 = (_e37 * v18_3);
+    float v34_2 = (_e36 * v19_1);
+    float v35_3 = (_e36 * v18_3);
+    float v36_3 = (_e37 * v19_1);
+    float v37_2 = (v33_2 - v34_2);
+    float v38_2 = (v35_3 + v36_3);
+    float v39_1 = (v37_2 / v26_2);
+    float v40_1 = (v38_2 / v26_2);
+    float v43_1 = (v39_1 * 3.0);
+    float v44_1 = (v16_3 * 6.0);
+    float v45_1 = (v40_1 * 3.0);
+    float v46_ = (v44_1 - 0.0);
+    const float _e57 = vol_fbm(float3(v43_1, v46_, v45_1), 5.0, 2.0, 0.5, 0u);
+    float v52_ = (_e57 + 0.15);
+    float v53_ = (25.0 * v52_);
+    float v54_ = (v20_3 - v26_2);
+    float v55_ = (v20_3 - 0.6);
+    float v56_ = (v54_ * 0.79870445);
+    float v58_ = ((v56_ < 0.5264106) ? v56_ : 0.5264106);
+    float v59_ = ((v55_ > v58_) ? v55_ : v58_);
+    bool v60_ = (v20_3 < 1.1264106);
+    float v61_ = (v60_ ? v59_ : v55_);
+    float v62_ = (1000000000000000.0 - v20_3);
+    float v63_ = ((v21_ < v62_) ? v21_ : v62_);
+    float v64_ = (v17_1 - v16_3);
+    float v65_ = ((v16_3 < v64_) ? v16_3 : v64_);
+    float v66_ = (v65_ * 0.69090724);
+    float v67_ = ((v66_ < 1.5609045) ? v66_ : 1.5609045);
+    float v68_ = -(v67_);
+    bool v69_ = (0.0 < v21_);
+    float v70_ = (v69_ ? v63_ : v68_);
+    float v71_ = ((v61_ > v70_) ? v61_ : v70_);
+    bool v72_ = (0.0 < v71_);
+    float v73_ = ((v53_ > 0.0) ? v53_ : 0.0);
+    float v74_ = (v72_ ? 0.0 : v73_);
+    return v74_;
+}
+
+float3 vol_f8_colour_cloud(float x0_8, float x1_8, float x2_4)
+{
+    return float3(0.7912979, 0.8307699, 1.0);
+}
+
+float3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5)
+{
+    const Vol_CurvePoint _e9 = vol_closest(float3(x0_9, x1_9, x2_5), ConstructVol_Curve(0u, 2u));
+    float v6_1 = _e9.t;
+    float v7_ = _e9.arc_length;
+    float v8_2 = _e9.x;
+    float v9_1 = _e9.y;
+    float v10_3 = (v6_1 * v6_1);
+    float v11_2 = (v10_3 * 0.52);
+    float v12_2 = (0.08 + v11_2);
+    float v14_3 = ((v12_2 > 1e-6) ? v12_2 : 1e-6);
+    float v16_4 = (5.0265484 * v6_1);
+    float v18_4 = (v16_4 - 0.0);
+    const float _e24 = vol_sin(v18_4);
+    const float _e25 = vol_cos(v18_4);
+    float v21_1 = (_e25 * v8_2);
+    float v22_3 = (_e24 * v9_1);
+    float v23_3 = (_e24 * v8_2);
+    float v24_3 = (_e25 * v9_1);
+    float v25_3 = (v21_1 - v22_3);
+    float v26_3 = (v23_3 + v24_3);
+    float v27_3 = (v25_3 / v14_3);
+    float v28_4 = (v26_3 / v14_3);
+    return float3(v27_3, v7_, v28_4);
+}
+
+float vol_in_object_distance(uint index_7, float3 p_16)
+{
+    do {
+        return VOL_IN_FAR;
+    } while(false);
+}
+
+float3 vol_in_object_gradient(uint index_8, float3 p_17)
+{
+    do {
+        return (0.0).xxx;
+    } while(false);
+}
+
+float vol_in_object_steepness(uint index_9, float3 lo, float3 hi)
+{
+    do {
+        return 1.0;
+    } while(false);
+}
+
+Vol_in_Response ConstructVol_in_Response(float3 arg0, float3 arg1, float3 arg2, float arg3) {
+    Vol_in_Response ret = (Vol_in_Response)0;
+    ret.emitted = arg0;
+    ret.diffuse = arg1;
+    ret.specular = arg2;
+    ret.shininess = arg3;
+    return ret;
+}
+
+Vol_in_Response vol_in_object_surface(uint index_10, float3 p_18)
+{
+    do {
+        const Vol_in_Response vol_in_response = ConstructVol_in_Response((0.0).xxx, (0.0).xxx, (0.0).xxx, 0.0);
+        return vol_in_response;
+    } while(false);
+}
+
+float vol_in_medium_region(uint index_11, float3 p_19)
+{
+    switch(index_11) {
+        case 0u: {
+            const float _e5 = vol_f2_region_cloud(p_19.x, p_19.y, p_19.z);
+            return _e5;
+        }
+        default: {
+            return VOL_IN_FAR;
+        }
+    }
+}
+
+Vol_in_Interior ConstructVol_in_Interior(float arg0, float3 arg1, float3 arg2, float3 arg3) {
+    Vol_in_Interior ret = (Vol_in_Interior)0;
+    ret.density = arg0;
+    ret.scattering = arg1;
+    ret.extinction = arg2;
+    ret.emission = arg3;
+    return ret;
+}
+
+Vol_in_Interior vol_in_medium_interior(uint index_12, float3 p_20)
+{
+    switch(index_12) {
+        case 0u: {
+            const Vol_Out10_ _e5 = vol_f3_interior_cloud(p_20.x, p_20.y, p_20.z);
+            const Vol_in_Interior vol_in_interior = ConstructVol_in_Interior(_e5.v0_, float3(_e5.v1_, _e5.v2_, _e5.v3_), float3(_e5.v4_, _e5.v5_, _e5.v6_), float3(_e5.v7_, _e5.v8_, _e5.v9_));
+            return vol_in_interior;
+        }
+        default: {
+            const Vol_in_Interior vol_in_interior_1 = ConstructVol_in_Interior(0.0, (0.0).xxx, (0.0).xxx, (0.0).xxx);
+            return vol_in_interior_1;
+        }
+    }
+}
+
+float4 vol_in_medium_extinction(uint index_13, float3 p_21)
+{
+    switch(index_13) {
+        case 0u: {
+            const float4 _e5 = vol_f4_extinction_cloud(p_21.x, p_21.y, p_21.z);
+            return _e5;
+        }
+        default: {
+            return (0.0).xxxx;
+        }
+    }
+}
+
+float vol_in_medium_phase(uint index_14, float less, float more)
+{
+    switch(index_14) {
+        case 0u: {
+            const float _e3 = vol_f5_phase_cloud(less, more);
+            return _e3;
+        }
+        default: {
+            return 0.0;
+        }
+    }
+}
+
+float3 vol_in_word3_(uint at)
+{
+    const float _e1 = vol_frame_word(at);
+    const float _e4 = vol_frame_word((at + 1u));
+    const float _e7 = vol_frame_word((at + 2u));
+    return float3(_e1, _e4, _e7);
+}
+
+float3 vol_in_input3_(uint at_1)
+{
+    const float _e1 = vol_input_word(at_1);
+    const float _e4 = vol_input_word((at_1 + 1u));
+    const float _e7 = vol_input_word((at_1 + 2u));
+    return float3(_e1, _e4, _e7);
+}
+
+float vol_in_dot3_(float3 a_5, float3 b_5)
+{
+    return (((a_5.x * b_5.x) + (a_5.y * b_5.y)) + (a_5.z * b_5.z));
+}
+
+float vol_in_length3_(float3 v)
+{
+    const float _e1 = vol_in_dot3_(v, v);
+    return sqrt(_e1);
+}
+
+float vol_in_largest(float3 v_1)
+{
+    return max(max(v_1.x, v_1.y), v_1.z);
+}
+
+float vol_in_smallest(float3 v_2)
+{
+    return min(min(v_2.x, v_2.y), v_2.z);
+}
+
+float vol_in_decay(float x_15)
+{
+    const float _e3 = vol_exp2_((x_15 * -1.442695));
+    return _e3;
+}
+
+float3 vol_in_decay3_(float3 x_16)
+{
+    const float _e2 = vol_in_decay(x_16.x);
+    const float _e4 = vol_in_decay(x_16.y);
+    const float _e6 = vol_in_decay(x_16.z);
+    return float3(_e2, _e4, _e6);
+}
+
+float vol_in_mean_decay(float x_17)
+{
+    float tail = (x_17 * (0.008333334 - (x_17 * 0.0013888889)));
+    float series_1 = (1.0 - (x_17 * (0.5 - (x_17 * (0.16666667 - (x_17 * (0.041666668 - tail)))))));
+    const float _e17 = vol_in_decay(x_17);
+    float quotient = ((1.0 - _e17) / max(x_17, 0.35));
+    return ((x_17 < 0.35) ? series_1 : quotient);
+}
+
+float3 vol_in_mean_decay3_(float3 x_18)
+{
+    const float _e2 = vol_in_mean_decay(x_18.x);
+    const float _e4 = vol_in_mean_decay(x_18.y);
+    const float _e6 = vol_in_mean_decay(x_18.z);
+    return float3(_e2, _e4, _e6);
+}
+
+float vol_in_decay_moment(float x_19)
+{
+    float tail_1 = (x_19 * (0.0069444445 - (x_19 * (0.0011904762 - (x_19 * 0.00017361112)))));
+    float series_2 = (0.5 - (x_19 * (0.33333334 - (x_19 * (0.125 - (x_19 * (0.033333335 - tail_1)))))));
+    const float _e20 = vol_in_mean_decay(x_19);
+    const float _e21 = vol_in_decay(x_19);
+    float quotient_1 = ((_e20 - _e21) / max(x_19, 0.5));
+    return ((x_19 < 0.5) ? series_2 : quotient_1);
+}
+
+float3 vol_in_decay_moment3_(float3 x_20)
+{
+    const float _e2 = vol_in_decay_moment(x_20.x);
+    const float _e4 = vol_in_decay_moment(x_20.y);
+    const float _e6 = vol_in_decay_moment(x_20.z);
+    return float3(_e2, _e4, _e6);
+}
+
+float vol_in_power(float x_21, float y_6)
+{
+    bool some = (x_21 > 0.0);
+    const float _e6 = vol_log2_((some ? x_21 : 1.0));
+    const float _e8 = vol_exp2_((y_6 * _e6));
+    return (some ? _e8 : 0.0);
+}
+
+bool vol_in_is_within(Vol_in_Mean mean, float tolerance)
+{
+    bool local = (bool)0;
+
+    float count_4 = float(mean.count);
+    float scaled_1 = ((tolerance * tolerance) * (count_4 * (count_4 - 1.0)));
+    const float _e12 = vol_in_dot3_(mean.color, mean.color);
+    float color_1 = (scaled_1 * max(_e12, 0.01171875));
+    float transmittance = (scaled_1 * 3.0);
+    if ((mean.color_spread <= color_1)) {
+        local = (mean.transmittance_spread <= transmittance);
+    } else {
+        local = false;
+    }
+    bool _e24 = local;
+    return _e24;
+}
+
+uint naga_mod(uint lhs, uint rhs) {
+    return lhs % (rhs == 0u ? 1u : rhs);
+}
+
+uint naga_f2u32(float value) {
+    return uint(clamp(value, 0.0, 4294967000.0));
+}
+
+bool vol_in_is_done(Vol_in_Mean mean_1)
+{
+    bool local_1 = (bool)0;
+    bool local_2 = (bool)0;
+    bool local_3 = (bool)0;
+
+    const float _e3 = vol_frame_word(VOL_IN_AT_SAMPLES);
+    if ((mean_1.count >= naga_f2u32(_e3))) {
+        return true;
+    }
+    if ((mean_1.count >= VOL_IN_FIRST_ROUND)) {
+        local_1 = (naga_mod((mean_1.count - VOL_IN_FIRST_ROUND), VOL_IN_ROUND) == 0u);
+    } else {
+        local_1 = false;
+    }
+    bool tested = local_1;
+    const float _e22 = vol_frame_word(VOL_IN_AT_TOLERANCE);
+    if (tested) {
+        local_2 = (_e22 > 0.0);
+    } else {
+        local_2 = false;
+    }
+    bool _e28 = local_2;
+    if (_e28) {
+        const bool _e31 = vol_in_is_within(mean_1, _e22);
+        local_3 = _e31;
+    } else {
+        local_3 = false;
+    }
+    bool _e33 = local_3;
+    return _e33;
+}
+
+uint vol_in_object_word(uint solid)
+{
+    return (VOL_IN_AT_OBJECTS + (VOL_IN_OBJECT_WORDS * solid));
+}
+
+bool vol_in_contains(float3 lo_1, float3 hi_1, float3 point_2)
+{
+    return (all((lo_1 <= point_2)) & all((point_2 <= hi_1)));
+}
+
+typedef float ret_vol_in_find_sides[1];
+ret_vol_in_find_sides vol_in_find_sides()
+{
+    float sides[1] = (float[1])0;
+    uint solid_1 = 0u;
+
+    uint2 loop_bound_3 = uint2(4294967295u, 4294967295u);
+    bool loop_init_3 = true;
+    while(true) {
+        if (all(loop_bound_3 == uint2(0u, 0u))) { break; }
+        loop_bound_3 -= uint2(loop_bound_3.y == 0u, 1u);
+        if (!loop_init_3) {
+            uint _e34 = solid_1;
+            solid_1 = (_e34 + 1u);
+        }
+        loop_init_3 = false;
+        uint _e3 = solid_1;
+        if ((_e3 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e6 = solid_1;
+            const uint _e7 = vol_in_object_word(_e6);
+            const float3 _e9 = vol_in_word3_(VOL_IN_AT_EYE);
+            uint _e10 = solid_1;
+            sides[min(uint(_e10), 0u)] = 1.0;
+            const float3 _e15 = vol_in_word3_((_e7 + 1u));
+            const float3 _e18 = vol_in_word3_((_e7 + 4u));
+            const bool _e19 = vol_in_contains(_e15, _e18, _e9);
+            const float _e20 = vol_frame_word(_e7);
+            if ((_e19 & (_e20 != 0.0))) {
+                uint _e24 = solid_1;
+                uint _e26 = solid_1;
+                const float _e27 = vol_in_object_distance(_e26, _e9);
+                sides[min(uint(_e24), 0u)] = ((_e27 < 0.0) ? -1.0 : 1.0);
+            }
+        }
+    }
+    float _e36[1] = sides;
+    return _e36;
+}
+
+Vol_in_Span ConstructVol_in_Span(float arg0, float arg1) {
+    Vol_in_Span ret = (Vol_in_Span)0;
+    ret.entry = arg0;
+    ret.leave = arg1;
+    return ret;
+}
+
+Vol_in_Span vol_in_loosened(Vol_in_Span span)
+{
+    const Vol_in_Span vol_in_span = ConstructVol_in_Span((span.entry - (1.9073486e-6 * span.entry)), (span.leave + (1.9073486e-6 * span.leave)));
+    return vol_in_span;
+}
+
+Vol_in_Span vol_in_slab(Vol_in_Ray ray, float3 lo_2, float3 hi_2)
+{
+    Vol_in_Span span_1 = ConstructVol_in_Span(0.0, 4000000.0);
+    uint axis_1 = 0u;
+
+    uint2 loop_bound_4 = uint2(4294967295u, 4294967295u);
+    bool loop_init_4 = true;
+    while(true) {
+        if (all(loop_bound_4 == uint2(0u, 0u))) { break; }
+        loop_bound_4 -= uint2(loop_bound_4.y == 0u, 1u);
+        if (!loop_init_4) {
+            uint _e57 = axis_1;
+            axis_1 = (_e57 + 1u);
+        }
+        loop_init_4 = false;
+        uint _e9 = axis_1;
+        if ((_e9 < 3u)) {
+        } else {
+            break;
+        }
+        {
+            uint _e13 = axis_1;
+            float o = ray.origin[min(uint(_e13), 2u)];
+            uint _e16 = axis_1;
+            float d = ray.direction[min(uint(_e16), 2u)];
+            bool parallel = (abs(d) < VOL_IN_PARALLEL);
+            float divisor = (parallel ? 1.0 : d);
+            uint _e23 = axis_1;
+            float a_9 = ((lo_2[min(uint(_e23), 2u)] - o) / divisor);
+            uint _e27 = axis_1;
+            float b_8 = ((hi_2[min(uint(_e27), 2u)] - o) / divisor);
+            uint _e31 = axis_1;
+            uint _e34 = axis_1;
+            bool beside = ((o < lo_2[min(uint(_e31), 2u)]) | (o > hi_2[min(uint(_e34), 2u)]));
+            float near_5 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_9, b_8));
+            float end_15 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_9, b_8));
+            float _e50 = span_1.entry;
+            span_1.entry = max(_e50, near_5);
+            float _e54 = span_1.leave;
+            span_1.leave = min(_e54, end_15);
+        }
+    }
+    Vol_in_Span _e59 = span_1;
+    const Vol_in_Span vol_in_span_1 = _e59;
+    return vol_in_span_1;
+}
+
+typedef Vol_in_Span ret_vol_in_object_spans[1];
+ret_vol_in_object_spans vol_in_object_spans(Vol_in_Ray ray_1, inout float sides_1[1])
+{
+    Vol_in_Span spans[1] = (Vol_in_Span[1])0;
+    uint solid_2 = 0u;
+
+    uint2 loop_bound_5 = uint2(4294967295u, 4294967295u);
+    bool loop_init_5 = true;
+    while(true) {
+        if (all(loop_bound_5 == uint2(0u, 0u))) { break; }
+        loop_bound_5 -= uint2(loop_bound_5.y == 0u, 1u);
+        if (!loop_init_5) {
+            uint _e41 = solid_2;
+            solid_2 = (_e41 + 1u);
+        }
+        loop_init_5 = false;
+        uint _e5 = solid_2;
+        if ((_e5 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e8 = solid_2;
+            const uint _e9 = vol_in_object_word(_e8);
+            const float3 _e12 = vol_in_word3_((_e9 + 1u));
+            const float3 _e15 = vol_in_word3_((_e9 + 4u));
+            const Vol_in_Span _e16 = vol_in_slab(ray_1, _e12, _e15);
+            const Vol_in_Span _e17 = vol_in_loosened(_e16);
+            const float _e18 = vol_frame_word(_e9);
+            bool there = (_e18 != 0.0);
+            uint _e21 = solid_2;
+            spans[min(uint(_e21), 0u)].entry = (there ? _e17.entry : VOL_IN_FAR);
+            uint _e29 = solid_2;
+            float _e31 = sides_1[min(uint(_e29), 0u)];
+            float leave = ((_e31 < 0.0) ? VOL_IN_FAR : _e17.leave);
+            uint _e35 = solid_2;
+            spans[min(uint(_e35), 0u)].leave = (there ? leave : -4000000.0);
+        }
+    }
+    Vol_in_Span _e43[1] = spans;
+    return _e43;
+}
+
+float3 vol_in_ray_at(Vol_in_Ray ray_2, float t_13)
+{
+    return (ray_2.origin + (ray_2.direction * t_13));
+}
+
+float vol_in_reach(float last, float value)
+{
+    float outside = max(value, 0.0);
+    return ((last > 0.0) ? min(outside, (2.0 * last)) : outside);
+}
+
+float vol_in_remoteness()
+{
+    const float3 _e1 = vol_in_word3_(VOL_IN_AT_EYE);
+    const float _e2 = vol_in_length3_(_e1);
+    return _e2;
+}
+
+float vol_in_way_steepness(uint solid_3, Vol_in_Ray ray_3, float t_14, float ahead)
+{
+    const float3 _e4 = vol_in_ray_at(ray_3, t_14);
+    const float3 _e6 = vol_in_ray_at(ray_3, (t_14 + ahead));
+    const float _e8 = vol_in_remoteness();
+    float slack = (4.7683716e-7 * (_e8 + (t_14 + ahead)));
+    const float _e18 = vol_in_object_steepness(solid_3, (min(_e4, _e6) - (slack).xxx), (max(_e4, _e6) + (slack).xxx));
+    return _e18;
+}
+
+float vol_in_shorten(uint solid_4, Vol_in_Ray ray_4, float t_15, float last_1, float value_1)
+{
+    float ahead_1 = (float)0;
+    uint count = 0u;
+
+    const uint _e5 = vol_in_object_word(solid_4);
+    const float _e8 = vol_frame_word((_e5 + 7u));
+    if ((_e8 != VOL_IN_BY_STEEPNESS)) {
+        return (_e8 * value_1);
+    }
+    if (!((value_1 > 0.0))) {
+        return value_1;
+    }
+    const float _e15 = vol_in_reach(last_1, value_1);
+    ahead_1 = _e15;
+    uint2 loop_bound_6 = uint2(4294967295u, 4294967295u);
+    bool loop_init_6 = true;
+    while(true) {
+        if (all(loop_bound_6 == uint2(0u, 0u))) { break; }
+        loop_bound_6 -= uint2(loop_bound_6.y == 0u, 1u);
+        if (!loop_init_6) {
+            uint _e33 = count;
+            count = (_e33 + 1u);
+        }
+        loop_init_6 = false;
+        uint _e19 = count;
+        if ((_e19 < VOL_IN_TRIES)) {
+        } else {
+            break;
+        }
+        {
+            float _e22 = ahead_1;
+            const float _e23 = vol_in_way_steepness(solid_4, ray_4, t_15, _e22);
+            if ((_e23 < VOL_IN_NO_BOUND)) {
+                float _e27 = ahead_1;
+                return min((value_1 / _e23), _e27);
+            }
+            float _e29 = ahead_1;
+            ahead_1 = (0.25 * _e29);
+        }
+    }
+    return 0.0;
+}
+
+Vol_in_Near ConstructVol_in_Near(float arg0, float arg1, uint arg2, float arg3, float arg4) {
+    Vol_in_Near ret = (Vol_in_Near)0;
+    ret.distance_ = arg0;
+    ret.value = arg1;
+    ret.solid = arg2;
+    ret.gap = arg3;
+    ret.rest = arg4;
+    return ret;
+}
+
+Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout float sides_2[1], float t_16, float before_1)
+{
+    Vol_in_Near near = ConstructVol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0);
+    uint solid_5 = 0u;
+
+    uint2 loop_bound_7 = uint2(4294967295u, 4294967295u);
+    bool loop_init_7 = true;
+    while(true) {
+        if (all(loop_bound_7 == uint2(0u, 0u))) { break; }
+        loop_bound_7 -= uint2(loop_bound_7.y == 0u, 1u);
+        if (!loop_init_7) {
+            uint _e74 = solid_5;
+            solid_5 = (_e74 + 1u);
+        }
+        loop_init_7 = false;
+        uint _e14 = solid_5;
+        if ((_e14 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e17 = solid_5;
+            Vol_in_Span span_2 = spans_1[min(uint(_e17), 0u)];
+            bool some_1 = (span_2.entry <= span_2.leave);
+            bool ahead_3 = (some_1 & (t_16 < span_2.entry));
+            float _e28 = near.gap;
+            float _e30 = near.gap;
+            near.gap = (ahead_3 ? min(_e30, (span_2.entry - t_16)) : _e28);
+            if (((some_1 & (t_16 >= span_2.entry)) & (t_16 <= span_2.leave))) {
+                float _e43 = near.rest;
+                near.rest = max(_e43, (span_2.leave - t_16));
+                uint _e47 = solid_5;
+                float _e49 = sides_2[min(uint(_e47), 0u)];
+                uint _e50 = solid_5;
+                const float3 _e51 = vol_in_ray_at(ray_5, t_16);
+                const float _e52 = vol_in_object_distance(_e50, _e51);
+                float seen_2 = (_e49 * _e52);
+                float _e56 = near.value;
+                near.value = min(_e56, seen_2);
+                uint _e58 = solid_5;
+                const float _e60 = vol_in_shorten(_e58, ray_5, t_16, (t_16 - before_1), seen_2);
+                float _e62 = near.distance_;
+                bool closer = (_e60 < _e62);
+                float _e66 = near.distance_;
+                near.distance_ = (closer ? _e60 : _e66);
+                uint _e70 = near.solid;
+                uint _e71 = solid_5;
+                near.solid = (closer ? _e71 : _e70);
+            }
+        }
+    }
+    Vol_in_Near _e76 = near;
+    const Vol_in_Near vol_in_near = _e76;
+    return vol_in_near;
+}
+
+float vol_in_footprint()
+{
+    const float3 _e1 = vol_in_word3_(VOL_IN_AT_UP);
+    const float _e2 = vol_in_length3_(_e1);
+    const float _e6 = vol_frame_word(5u);
+    return ((2.0 * _e2) / _e6);
+}
+
+float vol_in_tolerance(float t_17)
+{
+    const float _e1 = vol_in_footprint();
+    float pixel_3 = ((0.5 * _e1) * t_17);
+    const float _e6 = vol_in_remoteness();
+    return max(pixel_3, (4.7683716e-7 * (_e6 + t_17)));
+}
+
+float vol_in_advance(Vol_in_Near near_1, uint step_, float least)
+{
+    float free = min(near_1.distance_, near_1.gap);
+    bool stuck = (step_ > 1000u);
+    float left = float(((VOL_IN_MAX_STEPS - step_) + 1u));
+    float even = (stuck ? min((near_1.rest / left), near_1.gap) : 0.0);
+    return max(max(free, least), even);
+}
+
+float vol_in_stride(float t_18)
+{
+    const float _e1 = vol_in_footprint();
+    float pixel_4 = ((0.025 * _e1) * t_18);
+    const float _e6 = vol_in_remoteness();
+    return max(pixel_4, (4.7683716e-7 * (_e6 + t_18)));
+}
+
+float vol_in_probe(Vol_in_Bracket bracket)
+{
+    bool is_proper = ((bracket.outside.y >= 0.0) & (bracket.inside.y < 0.0));
+    float fall = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
+    float part_2 = (bracket.outside.y / fall);
+    float between_2 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_2));
+    return (is_proper ? between_2 : bracket.inside.x);
+}
+
+Vol_in_Bracket ConstructVol_in_Bracket(float2 arg0, float2 arg1) {
+    Vol_in_Bracket ret = (Vol_in_Bracket)0;
+    ret.outside = arg0;
+    ret.inside = arg1;
+    return ret;
+}
+
+Vol_in_Bracket vol_in_narrow(Vol_in_Bracket bracket_1, float2 found)
+{
+    bool within = (found.y < 0.0);
+    const Vol_in_Bracket vol_in_bracket = ConstructVol_in_Bracket((within ? bracket_1.outside : found), (within ? found : bracket_1.inside));
+    return vol_in_bracket;
+}
+
+float vol_in_rounding(float t_19)
+{
+    const float _e2 = vol_in_remoteness();
+    return (7.6293945e-6 * (_e2 + t_19));
+}
+
+float3 vol_in_facing_gradient(Vol_in_Ray ray_6, uint solid_6, float t_20, float side)
+{
+    float3 gradient = (0.0).xxx;
+    float aside = (float)0;
+    uint round_ = 0u;
+
+    const float _e7 = vol_in_rounding(t_20);
+    aside = _e7;
+    uint2 loop_bound_8 = uint2(4294967295u, 4294967295u);
+    bool loop_init_8 = true;
+    while(true) {
+        if (all(loop_bound_8 == uint2(0u, 0u))) { break; }
+        loop_bound_8 -= uint2(loop_bound_8.y == 0u, 1u);
+        if (!loop_init_8) {
+            uint _e28 = round_;
+            round_ = (_e28 + 1u);
+        }
+        loop_init_8 = false;
+        uint _e11 = round_;
+        if ((_e11 < 2u)) {
+        } else {
+            break;
+        }
+        {
+            float _e14 = aside;
+            const float3 _e16 = vol_in_ray_at(ray_6, (t_20 + _e14));
+            const float3 _e17 = vol_in_object_gradient(solid_6, _e16);
+            gradient = (_e17 * side);
+            float3 _e19 = gradient;
+            const float _e21 = vol_in_dot3_(_e19, ray_6.direction);
+            if (!((_e21 > 0.0))) {
+                break;
+            }
+            float _e25 = aside;
+            aside = -(_e25);
+        }
+    }
+    float3 _e30 = gradient;
+    return _e30;
+}
+
+Vol_in_Contact ConstructVol_in_Contact(bool arg0, uint arg1, float arg2, float3 arg3, float3 arg4, float arg5) {
+    Vol_in_Contact ret = (Vol_in_Contact)0;
+    ret.hit = arg0;
+    ret.solid = arg1;
+    ret.t = arg2;
+    ret.position = arg3;
+    ret.normal = arg4;
+    ret.residual = arg5;
+    return ret;
+}
+
+Vol_in_Contact vol_in_contact(Vol_in_Ray ray_7, uint solid_7, float t_21, float value_2, float3 gradient_1)
+{
+    const float _e5 = vol_in_length3_(gradient_1);
+    bool is_flat_1 = (_e5 < VOL_IN_FLAT);
+    float divisor_1 = (is_flat_1 ? 1.0 : _e5);
+    float3 normal = (is_flat_1 ? -(ray_7.direction) : (gradient_1 / (divisor_1).xxx));
+    const float _e15 = vol_in_tolerance(t_21);
+    float most = (4.0 * _e15);
+    const float3 _e19 = vol_in_ray_at(ray_7, t_21);
+    const Vol_in_Contact vol_in_contact_1 = ConstructVol_in_Contact(true, solid_7, t_21, _e19, normal, min((value_2 / divisor_1), most));
+    return vol_in_contact_1;
+}
+
+Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_8, float before_2, float t_22, float side_1)
+{
+    Vol_in_Bracket bracket_2 = (Vol_in_Bracket)0;
+    uint round_1 = 0u;
+
+    bracket_2 = ConstructVol_in_Bracket(float2(before_2, 0.0), float2(t_22, 0.0));
+    uint2 loop_bound_9 = uint2(4294967295u, 4294967295u);
+    bool loop_init_9 = true;
+    while(true) {
+        if (all(loop_bound_9 == uint2(0u, 0u))) { break; }
+        loop_bound_9 -= uint2(loop_bound_9.y == 0u, 1u);
+        if (!loop_init_9) {
+            uint _e41 = round_1;
+            round_1 = (_e41 + 1u);
+        }
+        loop_init_9 = false;
+        uint _e13 = round_1;
+        if ((_e13 < 6u)) {
+        } else {
+            break;
+        }
+        {
+            Vol_in_Bracket _e16 = bracket_2;
+            const float _e17 = vol_in_probe(_e16);
+            uint _e18 = round_1;
+            uint _e22 = round_1;
+            float place_6 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            const float3 _e26 = vol_in_ray_at(ray_8, place_6);
+            const float _e27 = vol_in_object_distance(solid_8, _e26);
+            float2 found_3 = float2(place_6, (side_1 * _e27));
+            uint _e30 = round_1;
+            if ((_e30 == 0u)) {
+                bracket_2.outside = found_3;
+            } else {
+                uint _e34 = round_1;
+                if ((_e34 == 1u)) {
+                    bracket_2.inside = found_3;
+                } else {
+                    Vol_in_Bracket _e38 = bracket_2;
+                    const Vol_in_Bracket _e39 = vol_in_narrow(_e38, found_3);
+                    bracket_2 = _e39;
+                }
+            }
+        }
+    }
+    float _e45 = bracket_2.outside.y;
+    float _e49 = bracket_2.inside.y;
+    bool nearer = (abs(_e45) < abs(_e49));
+    float2 _e53 = bracket_2.inside;
+    float2 _e55 = bracket_2.outside;
+    float2 best = (nearer ? _e55 : _e53);
+    const float3 _e58 = vol_in_facing_gradient(ray_8, solid_8, best.x, side_1);
+    const Vol_in_Contact _e62 = vol_in_contact(ray_8, solid_8, best.x, abs(best.y), _e58);
+    const Vol_in_Contact vol_in_contact_2 = _e62;
+    return vol_in_contact_2;
+}
+
+Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9)
+{
+    float sides_3[1] = (float[1])0;
+    Vol_in_Span spans_2[1] = (Vol_in_Span[1])0;
+    float t_23 = 0.0;
+    float before_3 = 0.0;
+    bool hit = false;
+    uint solid_9 = 0u;
+    uint count_1 = 1u;
+
+    const float _e1[1] = vol_in_find_sides();
+    sides_3 = _e1;
+    const Vol_in_Span _e3[1] = vol_in_object_spans(ray_9, sides_3);
+    spans_2 = _e3;
+    uint2 loop_bound_10 = uint2(4294967295u, 4294967295u);
+    bool loop_init_10 = true;
+    while(true) {
+        if (all(loop_bound_10 == uint2(0u, 0u))) { break; }
+        loop_bound_10 -= uint2(loop_bound_10.y == 0u, 1u);
+        if (!loop_init_10) {
+            uint _e43 = count_1;
+            count_1 = (_e43 + 1u);
+        }
+        loop_init_10 = false;
+        uint _e15 = count_1;
+        if ((_e15 <= VOL_IN_MAX_STEPS)) {
+        } else {
+            break;
+        }
+        {
+            float _e18 = t_23;
+            float _e19 = before_3;
+            const Vol_in_Near _e20 = vol_in_nearest(ray_9, spans_2, sides_3, _e18, _e19);
+            float _e22 = t_23;
+            const float _e23 = vol_in_tolerance(_e22);
+            uint _e24 = count_1;
+            hit = (_e20.value < ((_e24 == VOL_IN_MAX_STEPS) ? _e23 : 0.0));
+            solid_9 = _e20.solid;
+            float _e31 = t_23;
+            uint _e32 = count_1;
+            float _e33 = t_23;
+            const float _e34 = vol_in_stride(_e33);
+            const float _e35 = vol_in_advance(_e20, _e32, _e34);
+            float next_1 = (_e31 + _e35);
+            bool _e37 = hit;
+            if ((_e37 | (next_1 >= VOL_IN_FAR))) {
+                break;
+            }
+            float _e41 = t_23;
+            before_3 = _e41;
+            t_23 = next_1;
+        }
+    }
+    bool _e45 = hit;
+    if (_e45) {
+        uint _e46 = solid_9;
+        float _e47 = before_3;
+        float _e48 = t_23;
+        uint _e49 = solid_9;
+        float _e51 = sides_3[min(uint(_e49), 0u)];
+        const Vol_in_Contact _e52 = vol_in_refine(ray_9, _e46, _e47, _e48, _e51);
+        const Vol_in_Contact vol_in_contact_3 = _e52;
+        return vol_in_contact_3;
+    }
+    const Vol_in_Contact vol_in_contact_4 = ConstructVol_in_Contact(false, 0u, 4000000.0, (0.0).xxx, (0.0).xxx, 0.0);
+    return vol_in_contact_4;
+}
+
+uint vol_in_light_count()
+{
+    const float _e1 = vol_frame_word(VOL_IN_AT_LIGHT_COUNT);
+    return naga_f2u32(_e1);
+}
+
+Vol_in_Arriving ConstructVol_in_Arriving(float3 arg0, float arg1, float3 arg2, bool arg3, float arg4, uint arg5) {
+    Vol_in_Arriving ret = (Vol_in_Arriving)0;
+    ret.direction = arg0;
+    ret.distance_ = arg1;
+    ret.irradiance = arg2;
+    ret.shadows = arg3;
+    ret.slope = arg4;
+    ret.grid = arg5;
+    return ret;
+}
+
+Vol_in_Arriving vol_in_arriving(uint light, float3 point_3)
+{
+    uint at_2 = (VOL_IN_AT_LIGHTS + (VOL_IN_LIGHT_WORDS * light));
+    const float _e6 = vol_frame_word(at_2);
+    bool distant = (_e6 != 0.0);
+    const float3 _e11 = vol_in_word3_((at_2 + 1u));
+    float3 toward_2 = (_e11 - point_3);
+    const float _e13 = vol_in_dot3_(toward_2, toward_2);
+    float squared = max(_e13, 1e-12);
+    float distance_13 = sqrt(squared);
+    const float3 _e21 = vol_in_word3_((at_2 + 1u));
+    float3 direction_5 = (distant ? _e21 : (toward_2 / (distance_13).xxx));
+    const float3 _e25 = vol_in_word3_((at_2 + 4u));
+    const float3 _e30 = vol_in_word3_((at_2 + 4u));
+    float3 irradiance = (distant ? _e30 : (_e25 / (squared).xxx));
+    const float _e34 = vol_frame_word((at_2 + 7u));
+    bool shadows = (_e34 != 0.0);
+    const float _e39 = vol_frame_word((at_2 + 8u));
+    float slope_11 = (distant ? _e39 : min((_e39 / distance_13), VOL_IN_MAX_SPREAD_TANGENT));
+    const float _e46 = vol_frame_word((at_2 + 10u));
+    uint grid_5 = naga_f2u32(_e46);
+    const Vol_in_Arriving vol_in_arriving_1 = ConstructVol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_13), irradiance, shadows, slope_11, grid_5);
+    return vol_in_arriving_1;
+}
+
+float vol_in_shadow_bias(float t_24)
+{
+    const float _e1 = vol_in_footprint();
+    float pixel_5 = ((0.1 * _e1) * t_24);
+    const float _e5 = vol_in_rounding(t_24);
+    return (pixel_5 + _e5);
+}
+
+Vol_in_Ray ConstructVol_in_Ray(float3 arg0, float3 arg1, float arg2) {
+    Vol_in_Ray ret = (Vol_in_Ray)0;
+    ret.origin = arg0;
+    ret.direction = arg1;
+    ret.shift = arg2;
+    return ret;
+}
+
+Vol_in_Ray vol_in_new_ray(float3 origin, float3 direction)
+{
+    const Vol_in_Ray vol_in_ray = ConstructVol_in_Ray(origin, direction, 0.0);
+    return vol_in_ray;
+}
+
+Vol_in_Ray vol_in_rim(Vol_in_Ray ray_10, float slope, float2 end)
+{
+    float3 d_1 = ray_10.direction;
+    float turn_1 = ((d_1.z < 0.0) ? -1.0 : 1.0);
+    float a_10 = (-1.0 / (turn_1 + d_1.z));
+    float b_9 = ((d_1.x * d_1.y) * a_10);
+    float3 right = float3((1.0 + (turn_1 * ((d_1.x * d_1.x) * a_10))), (turn_1 * b_9), -((turn_1 * d_1.x)));
+    float3 up = float3(b_9, (turn_1 + ((d_1.y * d_1.y) * a_10)), -(d_1.y));
+    float3 toward_3 = (d_1 + (((right * end.x) + (up * end.y)) * slope));
+    const float _e46 = vol_in_length3_(toward_3);
+    const Vol_in_Ray _e49 = vol_in_new_ray(ray_10.origin, (toward_3 / (_e46).xxx));
+    const Vol_in_Ray vol_in_ray_1 = _e49;
+    return vol_in_ray_1;
+}
+
+float vol_in_squared_sine(float tangent)
+{
+    float squared_1 = (tangent * tangent);
+    return (squared_1 / (1.0 + squared_1));
+}
+
+typedef Vol_in_Span ret_vol_in_cone_spans[1];
+ret_vol_in_cone_spans vol_in_cone_spans(Vol_in_Ray ray_11, float distance_, float slope_1)
+{
+    Vol_in_Span spans_3[1] = (Vol_in_Span[1])0;
+    uint solid_10 = 0u;
+
+    uint2 loop_bound_11 = uint2(4294967295u, 4294967295u);
+    bool loop_init_11 = true;
+    while(true) {
+        if (all(loop_bound_11 == uint2(0u, 0u))) { break; }
+        loop_bound_11 -= uint2(loop_bound_11.y == 0u, 1u);
+        if (!loop_init_11) {
+            uint _e51 = solid_10;
+            solid_10 = (_e51 + 1u);
+        }
+        loop_init_11 = false;
+        uint _e6 = solid_10;
+        if ((_e6 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e9 = solid_10;
+            const uint _e10 = vol_in_object_word(_e9);
+            const float3 _e13 = vol_in_word3_((_e10 + 1u));
+            const float3 _e16 = vol_in_word3_((_e10 + 4u));
+            const float _e24 = vol_in_length3_(max(abs((_e13 - ray_11.origin)), abs((_e16 - ray_11.origin))));
+            float width = ((VOL_IN_CLEAR * slope_1) * min(_e24, distance_));
+            const Vol_in_Span _e33 = vol_in_slab(ray_11, (_e13 - (width).xxx), (_e16 + (width).xxx));
+            const Vol_in_Span _e34 = vol_in_loosened(_e33);
+            const float _e35 = vol_frame_word(_e10);
+            bool there_1 = (_e35 != 0.0);
+            uint _e38 = solid_10;
+            spans_3[min(uint(_e38), 0u)].entry = (there_1 ? _e34.entry : VOL_IN_FAR);
+            uint _e44 = solid_10;
+            spans_3[min(uint(_e44), 0u)].leave = (there_1 ? _e34.leave : -4000000.0);
+        }
+    }
+    Vol_in_Span _e53[1] = spans_3;
+    return _e53;
+}
+
+Vol_in_Around ConstructVol_in_Around(float arg0, float arg1, float arg2) {
+    Vol_in_Around ret = (Vol_in_Around)0;
+    ret.distance_ = arg0;
+    ret.safe = arg1;
+    ret.gap = arg2;
+    return ret;
+}
+
+Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_25)
+{
+    Vol_in_Around near_2 = ConstructVol_in_Around(4000000.0, 4000000.0, 4000000.0);
+    uint solid_11 = 0u;
+
+    uint2 loop_bound_12 = uint2(4294967295u, 4294967295u);
+    bool loop_init_12 = true;
+    while(true) {
+        if (all(loop_bound_12 == uint2(0u, 0u))) { break; }
+        loop_bound_12 -= uint2(loop_bound_12.y == 0u, 1u);
+        if (!loop_init_12) {
+            uint _e60 = solid_11;
+            solid_11 = (_e60 + 1u);
+        }
+        loop_init_12 = false;
+        uint _e10 = solid_11;
+        if ((_e10 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e13 = solid_11;
+            Vol_in_Span span_3 = spans_4[min(uint(_e13), 0u)];
+            bool some_2 = (span_3.entry <= span_3.leave);
+            bool before_10 = (some_2 & (t_25 < span_3.entry));
+            float _e24 = near_2.gap;
+            float _e26 = near_2.gap;
+            near_2.gap = (before_10 ? min(_e26, (span_3.entry - t_25)) : _e24);
+            if (((some_2 & (t_25 >= span_3.entry)) & (t_25 <= span_3.leave))) {
+                uint _e37 = solid_11;
+                const float3 _e38 = vol_in_ray_at(ray_12, t_25);
+                const float _e39 = vol_in_object_distance(_e37, _e38);
+                uint _e40 = solid_11;
+                const float _e42 = vol_in_shorten(_e40, ray_12, t_25, 0.0, _e39);
+                uint _e43 = solid_11;
+                const uint _e44 = vol_in_object_word(_e43);
+                const float _e47 = vol_frame_word((_e44 + 7u));
+                bool own_units = (_e47 == VOL_IN_BY_STEEPNESS);
+                float _e52 = near_2.distance_;
+                near_2.distance_ = min(_e52, (own_units ? _e42 : _e39));
+                float _e57 = near_2.safe;
+                near_2.safe = min(_e57, _e42);
+            }
+        }
+    }
+    Vol_in_Around _e62 = near_2;
+    const Vol_in_Around vol_in_around_1 = _e62;
+    return vol_in_around_1;
+}
+
+bool vol_in_enters(float distance_1, float t_26, float least_1)
+{
+    float start_1 = ((8.0 * least_1) - t_26);
+    return (distance_1 < -(max(start_1, 0.0)));
+}
+
+float vol_in_least(float2 a_6, float2 b_6, float2 c_3)
+{
+    bool in_order = ((a_6.x > b_6.x) & (b_6.x > c_3.x));
+    bool lowest_2 = ((b_6.y <= a_6.y) & (b_6.y <= c_3.y));
+    if (!((in_order & lowest_2))) {
+        return c_3.y;
+    }
+    float fall_1 = ((b_6.y - a_6.y) / (b_6.x - a_6.x));
+    float rise_2 = ((c_3.y - b_6.y) / (c_3.x - b_6.x));
+    float bend = ((rise_2 - fall_1) / (c_3.x - a_6.x));
+    if ((bend <= 0.0)) {
+        return b_6.y;
+    }
+    float place_7 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_1 / bend)));
+    float value_6 = (a_6.y + ((place_7 - a_6.x) * (fall_1 + (bend * (place_7 - b_6.x)))));
+    return min(max(value_6, (0.75 * b_6.y)), b_6.y);
+}
+
+float vol_in_cone_step(Vol_in_Around near_3, float least_step, float slope_2, float t_27)
+{
+    const float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_2));
+    float sine = sqrt(_e6);
+    float free_1 = ((near_3.safe - (sine * t_27)) / (1.0 + sine));
+    float shortest = max(least_step, ((0.002 * slope_2) * t_27));
+    return max(min(max(free_1, (0.5 * near_3.safe)), near_3.gap), shortest);
+}
+
+float vol_in_clearance(float lowest, float slope_3)
+{
+    float cosine_1 = max((1.0 - lowest), VOL_IN_EPSILON);
+    return min((sqrt((lowest / cosine_1)) / slope_3), VOL_IN_CLEAR);
+}
+
+float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float slope_4)
+{
+    float lowest_1 = (float)0;
+    Vol_in_Span spans_5[1] = (Vol_in_Span[1])0;
+    float t_28 = 0.0;
+    float2 older = (0.0).xx;
+    float2 newer = (0.0).xx;
+    uint count_2 = 0u;
+
+    const float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_4));
+    lowest_1 = _e6;
+    const Vol_in_Span _e8[1] = vol_in_cone_spans(ray_13, distance_2, slope_4);
+    spans_5 = _e8;
+    float end_16 = min(distance_2, VOL_IN_FAR);
+    uint2 loop_bound_13 = uint2(4294967295u, 4294967295u);
+    bool loop_init_13 = true;
+    while(true) {
+        if (all(loop_bound_13 == uint2(0u, 0u))) { break; }
+        loop_bound_13 -= uint2(loop_bound_13.y == 0u, 1u);
+        if (!loop_init_13) {
+            uint _e77 = count_2;
+            count_2 = (_e77 + 1u);
+        }
+        loop_init_13 = false;
+        uint _e22 = count_2;
+        if ((_e22 < VOL_IN_MAX_STEPS)) {
+        } else {
+            break;
+        }
+        {
+            float _e25 = t_28;
+            const Vol_in_Around _e26 = vol_in_around(ray_13, spans_5, _e25);
+            float _e28 = t_28;
+            const bool _e29 = vol_in_enters(_e26.distance_, _e28, least_step_1);
+            if (_e29) {
+                lowest_1 = 0.0;
+                break;
+            }
+            float _e31 = t_28;
+            float _e39 = t_28;
+            bool counts = (((_e31 > 0.0) & (_e26.distance_ >= 0.0)) & (_e26.distance_ < (end_16 - _e39)));
+            float _e43 = t_28;
+            float divisor_2 = (counts ? _e43 : 1.0);
+            float sine_1 = min((_e26.distance_ / divisor_2), 1.0);
+            float2 sample_1 = float2((1.0 / divisor_2), (sine_1 * sine_1));
+            float2 _e55 = older;
+            float2 _e56 = newer;
+            const float _e57 = vol_in_least(_e55, _e56, sample_1);
+            float found_4 = min(sample_1.y, _e57);
+            float _e59 = lowest_1;
+            float _e60 = lowest_1;
+            lowest_1 = (counts ? min(_e60, found_4) : _e59);
+            float2 _e65 = newer;
+            older = (counts ? _e65 : (0.0).xx);
+            newer = (counts ? sample_1 : (0.0).xx);
+            float _e70 = t_28;
+            float _e71 = t_28;
+            const float _e72 = vol_in_cone_step(_e26, least_step_1, slope_4, _e71);
+            t_28 = (_e70 + _e72);
+            float _e74 = t_28;
+            if ((_e74 >= end_16)) {
+                break;
+            }
+        }
+    }
+    float _e79 = lowest_1;
+    const float _e80 = vol_in_clearance(_e79, slope_4);
+    return _e80;
+}
+
+float vol_in_clear_depth(float clear, float2 end_1, float2 place)
+{
+    float2 aside_1 = (place - end_1);
+    float distance_14 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
+    return ((clear > 0.0) ? (clear - distance_14) : -2.0);
+}
+
+float vol_in_lit_part(float centre, inout float clear_1[8])
+{
+    float2 ends[8] = VOL_IN_RIM;
+    float2 places[19] = VOL_IN_PLACES;
+    float sum_2 = 0.0;
+    uint index_15 = 0u;
+    float inside = (float)0;
+    uint end_2 = (uint)0;
+    float widest = (float)0;
+    uint end_3 = 0u;
+
+    uint2 loop_bound_14 = uint2(4294967295u, 4294967295u);
+    bool loop_init_14 = true;
+    while(true) {
+        if (all(loop_bound_14 == uint2(0u, 0u))) { break; }
+        loop_bound_14 -= uint2(loop_bound_14.y == 0u, 1u);
+        if (!loop_init_14) {
+            uint _e60 = index_15;
+            index_15 = (_e60 + 1u);
+        }
+        loop_init_14 = false;
+        uint _e10 = index_15;
+        if ((_e10 < VOL_IN_PLACE_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e15 = index_15;
+            float2 _e17 = places[min(uint(_e15), 18u)];
+            const float _e18 = vol_in_clear_depth(centre, (0.0).xx, _e17);
+            inside = _e18;
+            end_2 = 0u;
+            uint2 loop_bound_15 = uint2(4294967295u, 4294967295u);
+            bool loop_init_15 = true;
+            while(true) {
+                if (all(loop_bound_15 == uint2(0u, 0u))) { break; }
+                loop_bound_15 -= uint2(loop_bound_15.y == 0u, 1u);
+                if (!loop_init_15) {
+                    uint _e38 = end_2;
+                    end_2 = (_e38 + 1u);
+                }
+                loop_init_15 = false;
+                uint _e22 = end_2;
+                if ((_e22 < VOL_IN_RIM_COUNT)) {
+                } else {
+                    break;
+                }
+                {
+                    float _e25 = inside;
+                    uint _e26 = end_2;
+                    float _e28 = clear_1[min(uint(_e26), 7u)];
+                    uint _e29 = end_2;
+                    float2 _e31 = ends[min(uint(_e29), 7u)];
+                    uint _e32 = index_15;
+                    float2 _e34 = places[min(uint(_e32), 18u)];
+                    const float _e35 = vol_in_clear_depth(_e28, _e31, _e34);
+                    inside = max(_e25, _e35);
+                }
+            }
+            float _e40 = inside;
+            float edge = min(max(((_e40 + VOL_IN_LACK) / VOL_IN_BLUR), -1.0), 1.0);
+            float over = (1.0 + edge);
+            float _e51 = sum_2;
+            sum_2 = (_e51 + ((0.25 * (over * over)) * (2.0 - edge)));
+        }
+    }
+    float _e62 = sum_2;
+    float part_3 = (_e62 / 19.0);
+    float whole_2 = max(((4.0 * centre) - 3.0), 0.0);
+    widest = centre;
+    uint2 loop_bound_16 = uint2(4294967295u, 4294967295u);
+    bool loop_init_16 = true;
+    while(true) {
+        if (all(loop_bound_16 == uint2(0u, 0u))) { break; }
+        loop_bound_16 -= uint2(loop_bound_16.y == 0u, 1u);
+        if (!loop_init_16) {
+            uint _e83 = end_3;
+            end_3 = (_e83 + 1u);
+        }
+        loop_init_16 = false;
+        uint _e74 = end_3;
+        if ((_e74 < VOL_IN_RIM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            float _e77 = widest;
+            uint _e78 = end_3;
+            float _e80 = clear_1[min(uint(_e78), 7u)];
+            widest = max(_e77, _e80);
+        }
+    }
+    float _e90 = widest;
+    return ((part_3 + ((1.0 - part_3) * (whole_2 * whole_2))) * min((10.0 * _e90), 1.0));
+}
+
+float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2, float slope_5)
+{
+    float2 ends_1[8] = VOL_IN_RIM;
+    float clear_2[8] = (float[8])0;
+    float centre_1 = 0.0;
+    uint index_16 = 0u;
+    Vol_in_Ray toward = (Vol_in_Ray)0;
+
+    uint2 loop_bound_17 = uint2(4294967295u, 4294967295u);
+    bool loop_init_17 = true;
+    while(true) {
+        if (all(loop_bound_17 == uint2(0u, 0u))) { break; }
+        loop_bound_17 -= uint2(loop_bound_17.y == 0u, 1u);
+        if (!loop_init_17) {
+            uint _e36 = index_16;
+            index_16 = (_e36 + 1u);
+        }
+        loop_init_17 = false;
+        uint _e11 = index_16;
+        if ((_e11 <= VOL_IN_RIM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e14 = index_16;
+            uint end_17 = (max(_e14, 1u) - 1u);
+            toward = ray_14;
+            uint _e20 = index_16;
+            if ((_e20 > 0u)) {
+                float2 _e24 = ends_1[min(uint(end_17), 7u)];
+                const Vol_in_Ray _e25 = vol_in_rim(ray_14, slope_5, _e24);
+                toward = _e25;
+            }
+            Vol_in_Ray _e26 = toward;
+            const float _e27 = vol_in_walk(_e26, distance_3, least_step_2, slope_5);
+            uint _e28 = index_16;
+            if ((_e28 > 0u)) {
+                clear_2[min(uint(end_17), 7u)] = _e27;
+            } else {
+                if ((_e27 >= 1.0)) {
+                    return 1.0;
+                } else {
+                    centre_1 = _e27;
+                }
+            }
+        }
+    }
+    float _e38 = centre_1;
+    const float _e39 = vol_in_lit_part(_e38, clear_2);
+    return _e39;
+}
+
+typedef float ret_vol_in_no_sides[1];
+ret_vol_in_no_sides vol_in_no_sides()
+{
+    float sides_4[1] = (float[1])0;
+    uint solid_12 = 0u;
+
+    uint2 loop_bound_18 = uint2(4294967295u, 4294967295u);
+    bool loop_init_18 = true;
+    while(true) {
+        if (all(loop_bound_18 == uint2(0u, 0u))) { break; }
+        loop_bound_18 -= uint2(loop_bound_18.y == 0u, 1u);
+        if (!loop_init_18) {
+            uint _e10 = solid_12;
+            solid_12 = (_e10 + 1u);
+        }
+        loop_init_18 = false;
+        uint _e3 = solid_12;
+        if ((_e3 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e6 = solid_12;
+            sides_4[min(uint(_e6), 0u)] = 1.0;
+        }
+    }
+    float _e12[1] = sides_4;
+    return _e12;
+}
+
+bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2)
+{
+    float sides_5[1] = (float[1])0;
+    Vol_in_Span spans_6[1] = (Vol_in_Span[1])0;
+    float t_29 = 0.0;
+    float before_4 = 0.0;
+    bool inside_1 = false;
+    uint count_3 = 1u;
+
+    const float _e3[1] = vol_in_no_sides();
+    sides_5 = _e3;
+    const Vol_in_Span _e5[1] = vol_in_object_spans(ray_15, sides_5);
+    spans_6 = _e5;
+    float end_18 = min(distance_4, VOL_IN_FAR);
+    uint2 loop_bound_19 = uint2(4294967295u, 4294967295u);
+    bool loop_init_19 = true;
+    while(true) {
+        if (all(loop_bound_19 == uint2(0u, 0u))) { break; }
+        loop_bound_19 -= uint2(loop_bound_19.y == 0u, 1u);
+        if (!loop_init_19) {
+            uint _e36 = count_3;
+            count_3 = (_e36 + 1u);
+        }
+        loop_init_19 = false;
+        uint _e17 = count_3;
+        if ((_e17 <= VOL_IN_MAX_STEPS)) {
+        } else {
+            break;
+        }
+        {
+            float _e20 = t_29;
+            float _e21 = before_4;
+            const Vol_in_Near _e22 = vol_in_nearest(ray_15, spans_6, sides_5, _e20, _e21);
+            float _e24 = t_29;
+            const bool _e25 = vol_in_enters(_e22.distance_, _e24, least_2);
+            inside_1 = _e25;
+            float _e26 = t_29;
+            before_4 = _e26;
+            float _e27 = t_29;
+            uint _e28 = count_3;
+            const float _e29 = vol_in_advance(_e22, _e28, least_2);
+            t_29 = (_e27 + _e29);
+            bool _e31 = inside_1;
+            float _e32 = t_29;
+            if ((_e31 | (_e32 >= end_18))) {
+                break;
+            }
+        }
+    }
+    bool _e38 = inside_1;
+    return _e38;
+}
+
+float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias)
+{
+    const bool _e5 = vol_in_blocked(ray_16, distance_5, (0.25 * bias));
+    return (_e5 ? 0.0 : 1.0);
+}
+
+Vol_in_Stencil ConstructVol_in_Stencil(uint4 arg0, float4 arg1) {
+    Vol_in_Stencil ret = (Vol_in_Stencil)0;
+    ret.at = arg0;
+    ret.weights = arg1;
+    return ret;
+}
+
+Vol_in_Stencil vol_in_stencil(float place_1, float last_2, uint words)
+{
+    float index_22 = min(floor(place_1), (last_2 - 1.0));
+    float t_40 = (place_1 - index_22);
+    float4 weights_8 = float4(((((1.0 - (0.5 * t_40)) * t_40) - 0.5) * t_40), (((((1.5 * t_40) - 2.5) * t_40) * t_40) + 1.0), ((((2.0 - (1.5 * t_40)) * t_40) + 0.5) * t_40), ((((0.5 * t_40) - 0.5) * t_40) * t_40));
+    int4 around = asint(asuint((naga_f2i32(index_22)).xxxx) + asuint(int4(int(-1), int(0), int(1), int(2))));
+    const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil((uint4(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx)) * words), weights_8);
+    return vol_in_stencil_1;
+}
+
+float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, uint channels)
+{
+    float sum_3 = 0.0;
+    uint i_4 = 0u;
+    uint j_3 = (uint)0;
+
+    uint four = min((channels + 3u), 4u);
+    uint2 loop_bound_20 = uint2(4294967295u, 4294967295u);
+    bool loop_init_20 = true;
+    while(true) {
+        if (all(loop_bound_20 == uint2(0u, 0u))) { break; }
+        loop_bound_20 -= uint2(loop_bound_20.y == 0u, 1u);
+        if (!loop_init_20) {
+            uint _e72 = i_4;
+            i_4 = (_e72 + 1u);
+        }
+        loop_init_20 = false;
+        uint _e13 = i_4;
+        if ((_e13 < four)) {
+        } else {
+            break;
+        }
+        {
+            j_3 = 0u;
+            uint2 loop_bound_21 = uint2(4294967295u, 4294967295u);
+            bool loop_init_21 = true;
+            while(true) {
+                if (all(loop_bound_21 == uint2(0u, 0u))) { break; }
+                loop_bound_21 -= uint2(loop_bound_21.y == 0u, 1u);
+                if (!loop_init_21) {
+                    uint _e69 = j_3;
+                    j_3 = (_e69 + 1u);
+                }
+                loop_init_21 = false;
+                uint _e17 = j_3;
+                if ((_e17 < four)) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e20 = i_4;
+                    uint _e24 = j_3;
+                    uint row = ((first + x_22.at[min(uint(_e20), 3u)]) + y_7.at[min(uint(_e24), 3u)]);
+                    const float _e32 = vol_input_word((row + z_5.at.x));
+                    const float _e39 = vol_input_word((row + z_5.at.y));
+                    float ab = ((z_5.weights.x * _e32) + (z_5.weights.y * _e39));
+                    const float _e47 = vol_input_word((row + z_5.at.z));
+                    float abc = (ab + (z_5.weights.z * _e47));
+                    const float _e55 = vol_input_word((row + z_5.at.w));
+                    float column = (abc + (z_5.weights.w * _e55));
+                    float _e58 = sum_3;
+                    uint _e60 = i_4;
+                    uint _e63 = j_3;
+                    sum_3 = (_e58 + ((x_22.weights[min(uint(_e60), 3u)] * y_7.weights[min(uint(_e63), 3u)]) * column));
+                }
+            }
+        }
+    }
+    float _e74 = sum_3;
+    return max(_e74, 0.0);
+}
+
+float3 vol_in_grid_depth(uint grid, float3 point_4)
+{
+    float3 depth = (0.0).xxx;
+    uint channel = 0u;
+
+    const float3 _e4 = vol_in_word3_((grid + 1u));
+    const float3 _e7 = vol_in_word3_((grid + 13u));
+    const float3 _e10 = vol_in_word3_((grid + 16u));
+    const float3 _e13 = vol_in_word3_((grid + 19u));
+    const float _e14 = vol_frame_word(grid);
+    bool distant_1 = (_e14 != 0.0);
+    float3 off = (point_4 - _e4);
+    const float3 _e20 = vol_in_word3_((grid + 4u));
+    const float _e21 = vol_in_dot3_(off, _e20);
+    const float3 _e24 = vol_in_word3_((grid + 7u));
+    const float _e25 = vol_in_dot3_(off, _e24);
+    const float3 _e28 = vol_in_word3_((grid + 10u));
+    const float _e29 = vol_in_dot3_(off, _e28);
+    bool ahead_4 = (distant_1 | (_e29 > (0.5 * _e7.z)));
+    float divisor_3 = ((ahead_4 & !(distant_1)) ? _e29 : 1.0);
+    const float _e41 = vol_in_length3_(off);
+    float3 seen_3 = float3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
+    float3 last_5 = (_e13 - (1.0).xxx);
+    float3 place_8 = ((seen_3 - _e7) * _e10);
+    bool beside_1 = ((((place_8.x < 0.0) | (place_8.x > last_5.x)) | (place_8.y < 0.0)) | (place_8.y > last_5.y));
+    if (((!(ahead_4) | beside_1) | (place_8.z <= 0.0))) {
+        return (0.0).xxx;
+    }
+    const float _e74 = vol_frame_word((grid + 25u));
+    uint channels_1 = naga_f2u32(_e74);
+    uint column_1 = (channels_1 * naga_f2u32(_e13.z));
+    const Vol_in_Stencil _e84 = vol_in_stencil(place_8.x, last_5.x, (column_1 * naga_f2u32(_e13.y)));
+    const Vol_in_Stencil _e87 = vol_in_stencil(place_8.y, last_5.y, column_1);
+    const Vol_in_Stencil _e92 = vol_in_stencil(min(place_8.z, last_5.z), last_5.z, channels_1);
+    const float _e95 = vol_frame_word((grid + 26u));
+    uint first_3 = naga_f2u32(_e95);
+    const float3 _e99 = vol_in_word3_((grid + 22u));
+    uint2 loop_bound_22 = uint2(4294967295u, 4294967295u);
+    bool loop_init_22 = true;
+    while(true) {
+        if (all(loop_bound_22 == uint2(0u, 0u))) { break; }
+        loop_bound_22 -= uint2(loop_bound_22.y == 0u, 1u);
+        if (!loop_init_22) {
+            uint _e113 = channel;
+            channel = (_e113 + 1u);
+        }
+        loop_init_22 = false;
+        uint _e105 = channel;
+        if ((_e105 < channels_1)) {
+        } else {
+            break;
+        }
+        {
+            uint _e107 = channel;
+            uint _e109 = channel;
+            const float _e111 = vol_in_grid_channel((first_3 + _e109), _e84, _e87, _e92, channels_1);
+            depth[min(uint(_e107), 2u)] = _e111;
+        }
+    }
+    float3 _e115 = depth;
+    float _e117 = depth.x;
+    return (_e99 * ((channels_1 == 1u) ? (_e117).xxx : _e115));
+}
+
+float vol_in_first_node(float shift)
+{
+    return (VOL_IN_CORRECTED ? ((shift > 0.0) ? (shift - 1.0) : shift) : (0.5 + shift));
+}
+
+uint vol_in_medium_word(uint medium)
+{
+    return (VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium));
+}
+
+int2 vol_in_node_range(Vol_in_Ray ray_17, uint medium_1, float step_size, float offset, float end_4)
+{
+    const uint _e5 = vol_in_medium_word(medium_1);
+    float3 reach_1 = ((1.01 * step_size)).xxx;
+    const float3 _e11 = vol_in_word3_((_e5 + 1u));
+    const float3 _e15 = vol_in_word3_((_e5 + 4u));
+    const Vol_in_Span _e17 = vol_in_slab(ray_17, (_e11 - reach_1), (_e15 + reach_1));
+    float leave_1 = min(_e17.leave, end_4);
+    float first_4 = min(max(floor(((_e17.entry / step_size) - offset)), 0.0), VOL_IN_LAST_NODE);
+    float last_6 = min(floor(((max(leave_1, 0.0) / step_size) - offset)), VOL_IN_LAST_NODE);
+    const float _e37 = vol_frame_word(_e5);
+    bool none = ((_e17.entry > leave_1) | (_e37 == 0.0));
+    return (none ? int2(int(0), int(-1)) : int2(naga_f2i32(first_4), naga_f2i32(last_6)));
+}
+
+int2 vol_in_range_union(int2 a_7, int2 b_7)
+{
+    int2 both = int2(min(a_7.x, b_7.x), max(a_7.y, b_7.y));
+    return ((a_7.x > a_7.y) ? b_7 : ((b_7.x > b_7.y) ? a_7 : both));
+}
+
+Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_18, float end_5, float step_size_1)
+{
+    Vol_in_Comb comb = (Vol_in_Comb)0;
+    int2 whole = int2(int(0), int(-1));
+    uint medium_2 = 0u;
+    uint medium_3 = 0u;
+
+    comb.step_ = step_size_1;
+    comb.end = end_5;
+    const float _e7 = vol_in_first_node(ray_18.shift);
+    comb.offset = _e7;
+    uint2 loop_bound_23 = uint2(4294967295u, 4294967295u);
+    bool loop_init_23 = true;
+    while(true) {
+        if (all(loop_bound_23 == uint2(0u, 0u))) { break; }
+        loop_bound_23 -= uint2(loop_bound_23.y == 0u, 1u);
+        if (!loop_init_23) {
+            uint _e26 = medium_2;
+            medium_2 = (_e26 + 1u);
+        }
+        loop_init_23 = false;
+        uint _e15 = medium_2;
+        if ((_e15 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e18 = medium_2;
+            const int2 _e19 = vol_in_node_range(ray_18, _e18, step_size_1, _e7, end_5);
+            uint _e21 = medium_2;
+            comb.ranges[min(uint(_e21), 0u)] = _e19;
+            int2 _e23 = whole;
+            const int2 _e24 = vol_in_range_union(_e23, _e19);
+            whole = _e24;
+        }
+    }
+    int _e30 = whole.x;
+    comb.first = _e30;
+    int _e33 = whole.y;
+    int _e35 = whole.x;
+    comb.last = min(_e33, asint(asuint(_e35) + asuint(int(16383))));
+    uint2 loop_bound_24 = uint2(4294967295u, 4294967295u);
+    bool loop_init_24 = true;
+    while(true) {
+        if (all(loop_bound_24 == uint2(0u, 0u))) { break; }
+        loop_bound_24 -= uint2(loop_bound_24.y == 0u, 1u);
+        if (!loop_init_24) {
+            uint _e53 = medium_3;
+            medium_3 = (_e53 + 1u);
+        }
+        loop_init_24 = false;
+        uint _e41 = medium_3;
+        if ((_e41 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e45 = medium_3;
+            comb.before[min(uint(_e45), 0u)] = VOL_IN_FAR;
+            uint _e49 = medium_3;
+            comb.own[min(uint(_e49), 0u)] = VOL_IN_FAR;
+        }
+    }
+    Vol_in_Comb _e55 = comb;
+    const Vol_in_Comb vol_in_comb = _e55;
+    return vol_in_comb;
+}
+
+float vol_in_node_distance(int node, float step_size_2, float offset_1)
+{
+    return ((float(node) + offset_1) * step_size_2);
+}
+
+float vol_in_panel_node(inout Vol_in_Comb comb_1, int node_1)
+{
+    float _e3 = comb_1.step_;
+    float _e5 = comb_1.offset;
+    const float _e6 = vol_in_node_distance(node_1, _e3, _e5);
+    float _e10 = comb_1.end;
+    return min(max(_e6, 0.0), _e10);
+}
+
+float vol_in_gap_probe(Vol_in_Gap gap, uint round_2)
+{
+    float length_1 = (gap.stop.x - gap.start.x);
+    float least_3 = (VOL_IN_LEAST_SHARE * length_1);
+    float touching = ((gap.start.y + least_3) / ((gap.start.y + gap.stop.y) + (least_3 + least_3)));
+    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching : 0.5)));
+}
+
+float vol_in_crossing_probe(Vol_in_Crossing crossing)
+{
+    float2 inside_2 = crossing.inside;
+    float2 outside_1 = crossing.outside;
+    return (inside_2.x + ((outside_1.x - inside_2.x) * (inside_2.y / (inside_2.y - outside_1.y))));
+}
+
+bool vol_in_near_cell(uint medium_4, float3 point_5, float step_size_3)
+{
+    bool near_4 = (bool)0;
+    uint cell = (uint)0;
+    uint index_17 = 0u;
+
+    const uint _e3 = vol_in_medium_word(medium_4);
+    const float _e6 = vol_frame_word((_e3 + 8u));
+    uint count_5 = naga_f2u32(_e6);
+    float3 reach_2 = ((1.01 * step_size_3)).xxx;
+    near_4 = (count_5 == 0u);
+    const float _e16 = vol_frame_word((_e3 + 7u));
+    cell = naga_f2u32(_e16);
+    uint2 loop_bound_25 = uint2(4294967295u, 4294967295u);
+    bool loop_init_25 = true;
+    while(true) {
+        if (all(loop_bound_25 == uint2(0u, 0u))) { break; }
+        loop_bound_25 -= uint2(loop_bound_25.y == 0u, 1u);
+        if (!loop_init_25) {
+            uint _e38 = index_17;
+            index_17 = (_e38 + 1u);
+        }
+        loop_init_25 = false;
+        uint _e21 = index_17;
+        if ((_e21 < count_5)) {
+        } else {
+            break;
+        }
+        {
+            uint _e23 = cell;
+            const float3 _e24 = vol_in_input3_(_e23);
+            float3 lo_3 = (_e24 - reach_2);
+            uint _e26 = cell;
+            const float3 _e29 = vol_in_input3_((_e26 + 3u));
+            float3 hi_3 = (_e29 + reach_2);
+            bool _e31 = near_4;
+            const bool _e32 = vol_in_contains(lo_3, hi_3, point_5);
+            near_4 = (_e31 | _e32);
+            uint _e34 = cell;
+            cell = (_e34 + VOL_IN_CELL_WORDS);
+        }
+    }
+    bool _e40 = near_4;
+    return _e40;
+}
+
+float vol_in_gap_room(Vol_in_Gap gap_1)
+{
+    return ((gap_1.stop.x - gap_1.start.x) - (gap_1.start.y + gap_1.stop.y));
+}
+
+Vol_in_Gap ConstructVol_in_Gap(float2 arg0, float2 arg1) {
+    Vol_in_Gap ret = (Vol_in_Gap)0;
+    ret.start = arg0;
+    ret.stop = arg1;
+    return ret;
+}
+
+Vol_in_Gap vol_in_gap_narrowed(Vol_in_Gap gap_2, float2 found_1)
+{
+    Vol_in_Gap first_5 = ConstructVol_in_Gap(gap_2.start, found_1);
+    Vol_in_Gap second = ConstructVol_in_Gap(found_1, gap_2.stop);
+    const float _e6 = vol_in_gap_room(second);
+    const float _e7 = vol_in_gap_room(first_5);
+    if ((_e6 > _e7)) {
+        const Vol_in_Gap vol_in_gap = second;
+        return vol_in_gap;
+    }
+    const Vol_in_Gap vol_in_gap_1 = first_5;
+    return vol_in_gap_1;
+}
+
+Vol_in_Crossing ConstructVol_in_Crossing(float2 arg0, float2 arg1, uint arg2) {
+    Vol_in_Crossing ret = (Vol_in_Crossing)0;
+    ret.inside = arg0;
+    ret.outside = arg1;
+    ret.moved = arg2;
+    return ret;
+}
+
+Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, float2 found_2)
+{
+    if ((found_2.y < 0.0)) {
+        float2 kept = float2(crossing_1.outside.x, ((crossing_1.moved == 1u) ? (0.5 * crossing_1.outside.y) : crossing_1.outside.y));
+        const Vol_in_Crossing vol_in_crossing = ConstructVol_in_Crossing(found_2, kept, 1u);
+        return vol_in_crossing;
+    }
+    float2 kept_1 = float2(crossing_1.inside.x, ((crossing_1.moved == 2u) ? (0.5 * crossing_1.inside.y) : crossing_1.inside.y));
+    const Vol_in_Crossing vol_in_crossing_1 = ConstructVol_in_Crossing(kept_1, found_2, 2u);
+    return vol_in_crossing_1;
+}
+
+Vol_in_Between ConstructVol_in_Between(float arg0, float2 arg1, uint arg2) {
+    Vol_in_Between ret = (Vol_in_Between)0;
+    ret.next = arg0;
+    ret.walls = arg1;
+    ret.count = arg2;
+    return ret;
+}
+
+Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_19, uint medium_5, inout Vol_in_Comb comb_2, int node_2, float2 t_30)
+{
+    Vol_in_Between between = ConstructVol_in_Between(4000000.0, (0.0).xx, 0u);
+    Vol_in_Gap gap_3 = (Vol_in_Gap)0;
+    Vol_in_Crossing crossing_2 = (Vol_in_Crossing)0;
+    Vol_in_Crossing other = (Vol_in_Crossing)0;
+    uint wanted = 0u;
+    uint aim = VOL_IN_THE_NODE;
+    uint round_3 = 0u;
+    float probe = (float)0;
+    float value_3 = (float)0;
+    bool local_4 = (bool)0;
+    bool local_5 = (bool)0;
+
+    float own_4 = comb_2.own[min(uint(medium_5), 0u)];
+    int2 range_1 = comb_2.ranges[min(uint(medium_5), 0u)];
+    bool known = (((range_1.x <= range_1.y) & (asint(asuint(node_2) + asuint(int(1))) >= range_1.x)) & (node_2 <= range_1.y));
+    uint2 loop_bound_26 = uint2(4294967295u, 4294967295u);
+    while(true) {
+        if (all(loop_bound_26 == uint2(0u, 0u))) { break; }
+        loop_bound_26 -= uint2(loop_bound_26.y == 0u, 1u);
+        uint _e37 = aim;
+        if ((_e37 != VOL_IN_NO_MORE)) {
+        } else {
+            break;
+        }
+        {
+            probe = t_30.y;
+            uint _e42 = aim;
+            if ((_e42 == VOL_IN_A_GAP)) {
+                Vol_in_Gap _e45 = gap_3;
+                uint _e46 = round_3;
+                const float _e47 = vol_in_gap_probe(_e45, _e46);
+                probe = _e47;
+            } else {
+                uint _e48 = aim;
+                if ((_e48 == VOL_IN_A_WALL)) {
+                    Vol_in_Crossing _e51 = crossing_2;
+                    const float _e52 = vol_in_crossing_probe(_e51);
+                    probe = _e52;
+                }
+            }
+            float _e53 = probe;
+            const float3 _e54 = vol_in_ray_at(ray_19, _e53);
+            value_3 = VOL_IN_FAR;
+            uint _e57 = aim;
+            if (!((_e57 != VOL_IN_THE_NODE))) {
+                if (known) {
+                    float _e66 = comb_2.step_;
+                    const bool _e67 = vol_in_near_cell(medium_5, _e54, _e66);
+                    local_5 = _e67;
+                } else {
+                    local_5 = false;
+                }
+                bool _e69 = local_5;
+                local_4 = _e69;
+            } else {
+                local_4 = true;
+            }
+            bool _e71 = local_4;
+            if (_e71) {
+                const float _e72 = vol_in_medium_region(medium_5, _e54);
+                value_3 = _e72;
+            }
+            float _e73 = probe;
+            float _e74 = value_3;
+            float2 found_5 = float2(_e73, _e74);
+            uint _e76 = round_3;
+            round_3 = (_e76 + 1u);
+            uint _e79 = aim;
+            if ((_e79 == VOL_IN_THE_NODE)) {
+                float _e83 = value_3;
+                between.next = _e83;
+                float2 start_2 = float2(t_30.x, own_4);
+                round_3 = 0u;
+                aim = VOL_IN_NO_MORE;
+                int _e89 = comb_2.first;
+                if (((node_2 >= _e89) & (t_30.x < t_30.y))) {
+                    float _e97 = value_3;
+                    if (((own_4 < 0.0) != (_e97 < 0.0))) {
+                        crossing_2 = ConstructVol_in_Crossing(((own_4 < 0.0) ? start_2 : found_5), ((own_4 < 0.0) ? found_5 : start_2), 0u);
+                        wanted = 1u;
+                        aim = VOL_IN_A_WALL;
+                    } else {
+                        gap_3 = ConstructVol_in_Gap(start_2, found_5);
+                        Vol_in_Gap _e114 = gap_3;
+                        const float _e115 = vol_in_gap_room(_e114);
+                        bool may_enter = ((own_4 >= 0.0) & (_e115 > 0.0));
+                        aim = (may_enter ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
+                    }
+                }
+            } else {
+                uint _e122 = aim;
+                if ((_e122 == VOL_IN_A_GAP)) {
+                    float _e125 = value_3;
+                    if ((_e125 < 0.0)) {
+                        float2 _e129 = gap_3.start;
+                        crossing_2 = ConstructVol_in_Crossing(found_5, _e129, 0u);
+                        float2 _e133 = gap_3.stop;
+                        other = ConstructVol_in_Crossing(found_5, _e133, 0u);
+                        wanted = 2u;
+                        aim = VOL_IN_A_WALL;
+                        round_3 = 0u;
+                    } else {
+                        Vol_in_Gap _e139 = gap_3;
+                        const Vol_in_Gap _e140 = vol_in_gap_narrowed(_e139, found_5);
+                        gap_3 = _e140;
+                        uint _e143 = round_3;
+                        Vol_in_Gap _e146 = gap_3;
+                        const float _e147 = vol_in_gap_room(_e146);
+                        aim = (((_e143 < VOL_IN_CHORD_ROUNDS) & (_e147 > 0.0)) ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
+                    }
+                } else {
+                    Vol_in_Crossing _e152 = crossing_2;
+                    const Vol_in_Crossing _e153 = vol_in_crossing_narrowed(_e152, found_5);
+                    crossing_2 = _e153;
+                    uint _e154 = round_3;
+                    if ((_e154 == VOL_IN_WALL_ROUNDS)) {
+                        uint _e159 = between.count;
+                        Vol_in_Crossing _e161 = crossing_2;
+                        const float _e162 = vol_in_crossing_probe(_e161);
+                        between.walls[min(uint(_e159), 1u)] = _e162;
+                        uint _e164 = between.count;
+                        between.count = (_e164 + 1u);
+                        Vol_in_Crossing _e167 = other;
+                        crossing_2 = _e167;
+                        uint _e171 = between.count;
+                        uint _e172 = wanted;
+                        aim = ((_e171 < _e172) ? VOL_IN_A_WALL : VOL_IN_NO_MORE);
+                        round_3 = 0u;
+                    }
+                }
+            }
+        }
+    }
+    float _e179 = between.next;
+    comb_2.own[min(uint(medium_5), 0u)] = _e179;
+    Vol_in_Between _e180 = between;
+    const Vol_in_Between vol_in_between = _e180;
+    return vol_in_between;
+}
+
+bool vol_in_wall_ends(float own, uint wall)
+{
+    return ((own < 0.0) | (wall == 1u));
+}
+
+bool vol_in_has_panel(inout Vol_in_Comb comb_3, int node_3, float2 t_31, float own_1, Vol_in_Between between_1)
+{
+    bool some_3 = (((own_1 < 0.0) | (between_1.next < 0.0)) | (between_1.count > 0u));
+    int _e16 = comb_3.first;
+    return (((node_3 >= _e16) & (t_31.x < t_31.y)) & some_3);
+}
+
+bool2 vol_in_open_ends(inout Vol_in_Comb comb_4, int node_4, float2 t_32, float own_2, float next)
+{
+    float _e9 = comb_4.step_;
+    float _e11 = comb_4.offset;
+    const float _e12 = vol_in_node_distance(asint(asuint(node_4) + asuint(int(1))), _e9, _e11);
+    bool is_last = (t_32.y < _e12);
+    return bool2(((own_2 >= 0.0) | (node_4 == int(0))), ((next >= 0.0) | is_last));
+}
+
+float2 vol_in_panel_masses(float step_size_4, float length_, float2 ends_2, bool2 open)
+{
+    float half_1 = (0.5 * length_);
+    float above = max(ends_2.x, ends_2.y);
+    float below = min(ends_2.x, ends_2.y);
+    bool changes = ((above > 0.0) & (below < 0.0));
+    float2 densities = max(ends_2, (0.0).xx);
+    float rise_3 = (open.x ? (densities.y - densities.x) : (densities.x - densities.y));
+    float part_4 = (step_size_4 / max(length_, (0.25 * step_size_4)));
+    float most_1 = (0.5 * (half_1 * (densities.x + densities.y)));
+    float missed = max(min(((0.083333336 * step_size_4) * (part_4 * rise_3)), most_1), -(most_1));
+    float2 given = (open.x ? float2(0.0, missed) : float2(missed, 0.0));
+    float2 plain = max(((half_1 * densities) + ((open.x == open.y) ? (0.0).xx : given)), (0.0).xx);
+    float fall_2 = (changes ? (above - below) : 1.0);
+    float mass = ((half_1 * (above * (above / fall_2))) + (length_ * (fall_2 * 0.083333336)));
+    float2 cut = ((ends_2.x > 0.0) ? float2(mass, 0.0) : float2(0.0, mass));
+    return (changes ? cut : plain);
+}
+
+float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_5, inout float4 before_5[1])
+{
+    float3 depth_1 = (0.0).xxx;
+    uint medium_6 = 0u;
+    float4 first_1 = (float4)0;
+    float4 last_3 = (float4)0;
+    float2 stretch = (float2)0;
+    uint kind = (uint)0;
+    float4 matter = (float4)0;
+    bool local_6 = (bool)0;
+
+    float step_size_7 = comb_5.step_;
+    const float _e6 = vol_in_panel_node(comb_5, node_5);
+    const float _e9 = vol_in_panel_node(comb_5, asint(asuint(node_5) + asuint(int(1))));
+    float2 t_41 = float2(_e6, _e9);
+    uint2 loop_bound_27 = uint2(4294967295u, 4294967295u);
+    bool loop_init_26 = true;
+    while(true) {
+        if (all(loop_bound_27 == uint2(0u, 0u))) { break; }
+        loop_bound_27 -= uint2(loop_bound_27.y == 0u, 1u);
+        if (!loop_init_26) {
+            uint _e104 = medium_6;
+            medium_6 = (_e104 + 1u);
+        }
+        loop_init_26 = false;
+        uint _e16 = medium_6;
+        if ((_e16 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e20 = medium_6;
+            float own_5 = comb_5.own[min(uint(_e20), 0u)];
+            uint _e23 = medium_6;
+            const Vol_in_Between _e24 = vol_in_find_walls(ray_20, _e23, comb_5, node_5, t_41);
+            float next_2 = _e24.next;
+            uint _e26 = medium_6;
+            float4 _e28 = before_5[min(uint(_e26), 0u)];
+            first_1 = _e28;
+            last_3 = (0.0).xxxx;
+            stretch = t_41;
+            kind = VOL_IN_AFTER;
+            uint2 loop_bound_28 = uint2(4294967295u, 4294967295u);
+            bool loop_init_27 = true;
+            while(true) {
+                if (all(loop_bound_28 == uint2(0u, 0u))) { break; }
+                loop_bound_28 -= uint2(loop_bound_28.y == 0u, 1u);
+                if (!loop_init_27) {
+                    uint _e77 = kind;
+                    kind = (_e77 + 1u);
+                }
+                loop_init_27 = false;
+                uint _e36 = kind;
+                if ((_e36 < (VOL_IN_WALL + _e24.count))) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e41 = kind;
+                    bool is_wall = (_e41 >= VOL_IN_WALL);
+                    uint _e44 = kind;
+                    uint wall_1 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
+                    float distance_15 = (is_wall ? _e24.walls[min(uint(wall_1), 1u)] : t_41.y);
+                    matter = (0.0).xxxx;
+                    if (!(is_wall)) {
+                        local_6 = (next_2 < 0.0);
+                    } else {
+                        local_6 = true;
+                    }
+                    bool _e62 = local_6;
+                    if (_e62) {
+                        uint _e63 = medium_6;
+                        const float3 _e64 = vol_in_ray_at(ray_20, distance_15);
+                        const float4 _e65 = vol_in_medium_extinction(_e63, _e64);
+                        matter = _e65;
+                    }
+                    if (!(is_wall)) {
+                        uint _e67 = medium_6;
+                        float4 _e69 = matter;
+                        before_5[min(uint(_e67), 0u)] = _e69;
+                        float4 _e70 = matter;
+                        last_3 = _e70;
+                    } else {
+                        const bool _e71 = vol_in_wall_ends(own_5, wall_1);
+                        if (_e71) {
+                            float4 _e72 = matter;
+                            last_3 = _e72;
+                            stretch.y = distance_15;
+                        } else {
+                            float4 _e74 = matter;
+                            first_1 = _e74;
+                            stretch.x = distance_15;
+                        }
+                    }
+                }
+            }
+            const bool _e79 = vol_in_has_panel(comb_5, node_5, t_41, own_5, _e24);
+            if (_e79) {
+                const bool2 _e80 = vol_in_open_ends(comb_5, node_5, t_41, own_5, next_2);
+                float _e82 = stretch.y;
+                float _e84 = stretch.x;
+                float _e87 = first_1.x;
+                float _e89 = last_3.x;
+                const float2 _e91 = vol_in_panel_masses(step_size_7, (_e82 - _e84), float2(_e87, _e89), _e80);
+                float3 _e92 = depth_1;
+                float4 _e93 = first_1;
+                float4 _e97 = last_3;
+                depth_1 = (_e92 + ((_e93.yzw * _e91.x) + (_e97.yzw * _e91.y)));
+            }
+        }
+    }
+    float3 _e106 = depth_1;
+    return _e106;
+}
+
+float3 vol_in_depth_by_panels(Vol_in_Ray ray_21, float end_6)
+{
+    Vol_in_Comb comb_6 = (Vol_in_Comb)0;
+    float4 before_6[1] = (float4[1])0;
+    float3 depth_2 = (0.0).xxx;
+    int node_6 = (int)0;
+
+    const float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
+    const Vol_in_Comb _e4 = vol_in_new_comb(ray_21, end_6, _e3);
+    comb_6 = _e4;
+    int _e11 = comb_6.first;
+    node_6 = asint(asuint(_e11) - asuint(int(1)));
+    uint2 loop_bound_29 = uint2(4294967295u, 4294967295u);
+    bool loop_init_28 = true;
+    while(true) {
+        if (all(loop_bound_29 == uint2(0u, 0u))) { break; }
+        loop_bound_29 -= uint2(loop_bound_29.y == 0u, 1u);
+        if (!loop_init_28) {
+            int _e28 = node_6;
+            node_6 = asint(asuint(_e28) + asuint(int(1)));
+        }
+        loop_init_28 = false;
+        int _e15 = node_6;
+        int _e17 = comb_6.last;
+        if ((_e15 <= _e17)) {
+        } else {
+            break;
+        }
+        {
+            float3 _e19 = depth_2;
+            int _e20 = node_6;
+            const float3 _e21 = vol_in_panel_depth(ray_21, comb_6, _e20, before_6);
+            depth_2 = (_e19 + _e21);
+            float3 _e23 = depth_2;
+            const float _e24 = vol_in_smallest(_e23);
+            if ((_e24 > VOL_IN_OPAQUE)) {
+                break;
+            }
+        }
+    }
+    float3 _e30 = depth_2;
+    return _e30;
+}
+
+float vol_in_wall(Vol_in_Ray ray_22, uint medium_7, int2 range, float t_33, int node_7, float step_size_5, float end_7)
+{
+    float region = VOL_IN_FAR;
+
+    bool some_4 = (range.x <= range.y);
+    if (((some_4 & (node_7 >= asint(asuint(range.x) - asuint(int(1))))) & (node_7 <= asint(asuint(range.y) + asuint(int(1)))))) {
+        const float3 _e22 = vol_in_ray_at(ray_22, t_33);
+        const bool _e23 = vol_in_near_cell(medium_7, _e22, step_size_5);
+        if (_e23) {
+            const float _e24 = vol_in_medium_region(medium_7, _e22);
+            region = _e24;
+        }
+    }
+    float _e25 = region;
+    return max(_e25, max((t_33 - end_7), -(t_33)));
+}
+
+float vol_in_share(float own_3, float other_1, float step_size_6)
+{
+    float divisor_4 = ((own_3 < other_1) ? (own_3 - other_1) : -1.0);
+    float part_5 = (step_size_6 * (own_3 / divisor_4));
+    return ((other_1 < 0.0) ? (0.5 * step_size_6) : part_5);
+}
+
+bool vol_in_weigh(Vol_in_Ray ray_23, inout Vol_in_Comb comb_7, int node_8, inout float weights[1])
+{
+    bool any_inside = false;
+    uint medium_8 = 0u;
+
+    float step_size_8 = comb_7.step_;
+    float _e11 = comb_7.offset;
+    const float _e12 = vol_in_node_distance(asint(asuint(node_8) + asuint(int(1))), step_size_8, _e11);
+    uint2 loop_bound_30 = uint2(4294967295u, 4294967295u);
+    bool loop_init_29 = true;
+    while(true) {
+        if (all(loop_bound_30 == uint2(0u, 0u))) { break; }
+        loop_bound_30 -= uint2(loop_bound_30.y == 0u, 1u);
+        if (!loop_init_29) {
+            uint _e58 = medium_8;
+            medium_8 = (_e58 + 1u);
+        }
+        loop_init_29 = false;
+        uint _e15 = medium_8;
+        if ((_e15 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e19 = medium_8;
+            float before_11 = comb_7.before[min(uint(_e19), 0u)];
+            uint _e23 = medium_8;
+            float own_6 = comb_7.own[min(uint(_e23), 0u)];
+            uint _e26 = medium_8;
+            uint _e28 = medium_8;
+            int2 _e30 = comb_7.ranges[min(uint(_e28), 0u)];
+            float _e34 = comb_7.end;
+            const float _e35 = vol_in_wall(ray_23, _e26, _e30, _e12, asint(asuint(node_8) + asuint(int(1))), step_size_8, _e34);
+            const float _e36 = vol_in_share(own_6, before_11, step_size_8);
+            const float _e37 = vol_in_share(own_6, _e35, step_size_8);
+            float weight = (_e36 + _e37);
+            int _e42 = comb_7.first;
+            bool is_inside = ((own_6 < 0.0) & (node_8 >= _e42));
+            uint _e45 = medium_8;
+            weights[min(uint(_e45), 0u)] = (is_inside ? weight : 0.0);
+            bool _e49 = any_inside;
+            any_inside = (_e49 | is_inside);
+            uint _e52 = medium_8;
+            comb_7.before[min(uint(_e52), 0u)] = own_6;
+            uint _e55 = medium_8;
+            comb_7.own[min(uint(_e55), 0u)] = _e35;
+        }
+    }
+    bool _e60 = any_inside;
+    return _e60;
+}
+
+float3 vol_in_node_depth(float3 point_6, inout float weights_1[1])
+{
+    float3 depth_3 = (0.0).xxx;
+    uint medium_9 = 0u;
+
+    uint2 loop_bound_31 = uint2(4294967295u, 4294967295u);
+    bool loop_init_30 = true;
+    while(true) {
+        if (all(loop_bound_31 == uint2(0u, 0u))) { break; }
+        loop_bound_31 -= uint2(loop_bound_31.y == 0u, 1u);
+        if (!loop_init_30) {
+            uint _e26 = medium_9;
+            medium_9 = (_e26 + 1u);
+        }
+        loop_init_30 = false;
+        uint _e7 = medium_9;
+        if ((_e7 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e10 = medium_9;
+            float weight_1 = weights_1[min(uint(_e10), 0u)];
+            if ((weight_1 > 0.0)) {
+                uint _e15 = medium_9;
+                const float4 _e16 = vol_in_medium_extinction(_e15, point_6);
+                float3 _e17 = depth_3;
+                depth_3 = (_e17 + (_e16.yzw * (max(_e16.x, 0.0) * weight_1)));
+            }
+        }
+    }
+    float3 _e28 = depth_3;
+    return _e28;
+}
+
+float3 vol_in_depth_by_nodes(Vol_in_Ray ray_24, float end_8)
+{
+    Vol_in_Comb comb_8 = (Vol_in_Comb)0;
+    float weights_2[1] = (float[1])0;
+    float3 depth_4 = (0.0).xxx;
+    int node_9 = (int)0;
+
+    const float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
+    const Vol_in_Comb _e4 = vol_in_new_comb(ray_24, end_8, _e3);
+    comb_8 = _e4;
+    int _e11 = comb_8.first;
+    node_9 = asint(asuint(_e11) - asuint(int(2)));
+    uint2 loop_bound_32 = uint2(4294967295u, 4294967295u);
+    bool loop_init_31 = true;
+    while(true) {
+        if (all(loop_bound_32 == uint2(0u, 0u))) { break; }
+        loop_bound_32 -= uint2(loop_bound_32.y == 0u, 1u);
+        if (!loop_init_31) {
+            int _e36 = node_9;
+            node_9 = asint(asuint(_e36) + asuint(int(1)));
+        }
+        loop_init_31 = false;
+        int _e15 = node_9;
+        int _e17 = comb_8.last;
+        if ((_e15 <= _e17)) {
+        } else {
+            break;
+        }
+        {
+            int _e19 = node_9;
+            const bool _e20 = vol_in_weigh(ray_24, comb_8, _e19, weights_2);
+            if (_e20) {
+                float3 _e21 = depth_4;
+                int _e22 = node_9;
+                float _e24 = comb_8.step_;
+                float _e26 = comb_8.offset;
+                const float _e27 = vol_in_node_distance(_e22, _e24, _e26);
+                const float3 _e28 = vol_in_ray_at(ray_24, _e27);
+                const float3 _e29 = vol_in_node_depth(_e28, weights_2);
+                depth_4 = (_e21 + _e29);
+            }
+            float3 _e31 = depth_4;
+            const float _e32 = vol_in_smallest(_e31);
+            if ((_e32 > VOL_IN_OPAQUE)) {
+                break;
+            }
+        }
+    }
+    float3 _e38 = depth_4;
+    return _e38;
+}
+
+float3 vol_in_optical_depth(Vol_in_Ray ray_25, float end_9)
+{
+    if (VOL_IN_CORRECTED) {
+        const float3 _e3 = vol_in_depth_by_panels(ray_25, end_9);
+        return _e3;
+    }
+    const float3 _e4 = vol_in_depth_by_nodes(ray_25, end_9);
+    return _e4;
+}
+
+float3 vol_in_depth_towards(Vol_in_Ray ray_26, float distance_6, uint grid_1)
+{
+    if (VOL_IN_LIGHT_GRIDS) {
+        if ((grid_1 != 0u)) {
+            const float3 _e7 = vol_in_grid_depth(grid_1, ray_26.origin);
+            return _e7;
+        }
+    }
+    const float3 _e8 = vol_in_optical_depth(ray_26, distance_6);
+    return _e8;
+}
+
+float3 vol_in_through_media(Vol_in_Ray ray_27, float distance_7, float part, uint grid_2)
+{
+    if ((part <= 0.0)) {
+        return (0.0).xxx;
+    }
+    const float3 _e8 = vol_in_depth_towards(ray_27, distance_7, grid_2);
+    const float3 _e9 = vol_in_decay3_(_e8);
+    const float _e13 = vol_in_smallest(_e8);
+    return ((_e13 > VOL_IN_OPAQUE) ? (0.0).xxx : (_e9 * part));
+}
+
+float3 vol_in_soft_visibility(Vol_in_Ray ray_28, float distance_8, float bias_1, float slope_6, uint grid_3)
+{
+    float part_1 = 0.0;
+    bool local_7 = (bool)0;
+
+    if (VOL_IN_SOFT_LIGHTS) {
+        local_7 = (slope_6 > 0.0);
+    } else {
+        local_7 = false;
+    }
+    bool _e13 = local_7;
+    if (_e13) {
+        const float _e16 = vol_in_lit_part_of(ray_28, distance_8, (0.25 * bias_1), slope_6);
+        part_1 = _e16;
+    } else {
+        const float _e17 = vol_in_unblocked(ray_28, distance_8, bias_1);
+        part_1 = _e17;
+    }
+    float _e18 = part_1;
+    const float3 _e19 = vol_in_through_media(ray_28, distance_8, _e18, grid_3);
+    return _e19;
+}
+
+float3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact)
+{
+    if (!(lamp.shadows)) {
+        return (1.0).xxx;
+    }
+    const float _e7 = vol_in_shadow_bias(contact.t);
+    float offset_2 = max(_e7, (2.0 * contact.residual));
+    float3 origin_2 = (contact.position + (contact.normal * offset_2));
+    const Vol_in_Ray _e17 = vol_in_new_ray(origin_2, lamp.direction);
+    const float3 _e21 = vol_in_soft_visibility(_e17, lamp.distance_, _e7, lamp.slope, lamp.grid);
+    return _e21;
+}
+
+float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float sides_6[1])
+{
+    float distance_9 = (float)0;
+    uint solid_13 = 0u;
+
+    float3 point_8 = (contact_1.position + (contact_1.normal * height));
+    distance_9 = height;
+    uint2 loop_bound_33 = uint2(4294967295u, 4294967295u);
+    bool loop_init_32 = true;
+    while(true) {
+        if (all(loop_bound_33 == uint2(0u, 0u))) { break; }
+        loop_bound_33 -= uint2(loop_bound_33.y == 0u, 1u);
+        if (!loop_init_32) {
+            uint _e39 = solid_13;
+            solid_13 = (_e39 + 1u);
+        }
+        loop_init_32 = false;
+        uint _e10 = solid_13;
+        if ((_e10 < VOL_IN_OBJECT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e13 = solid_13;
+            const uint _e14 = vol_in_object_word(_e13);
+            const float3 _e17 = vol_in_word3_((_e14 + 1u));
+            float3 lo_4 = (_e17 - (height).xxx);
+            const float3 _e22 = vol_in_word3_((_e14 + 4u));
+            float3 hi_4 = (_e22 + (height).xxx);
+            const bool _e25 = vol_in_contains(lo_4, hi_4, point_8);
+            const float _e26 = vol_frame_word(_e14);
+            if ((_e25 & (_e26 != 0.0))) {
+                float _e30 = distance_9;
+                uint _e31 = solid_13;
+                float _e33 = sides_6[min(uint(_e31), 0u)];
+                uint _e34 = solid_13;
+                const float _e35 = vol_in_object_distance(_e34, point_8);
+                distance_9 = min(_e30, (_e33 * _e35));
+            }
+        }
+    }
+    float _e41 = distance_9;
+    return _e41;
+}
+
+float vol_in_openness(Vol_in_Contact contact_2, float reach)
+{
+    float weights_3[5] = VOL_IN_WEIGHTS;
+    float sides_7[1] = (float[1])0;
+    float hidden = 0.0;
+    uint index_18 = 0u;
+
+    const float _e4[1] = vol_in_find_sides();
+    sides_7 = _e4;
+    uint2 loop_bound_34 = uint2(4294967295u, 4294967295u);
+    bool loop_init_33 = true;
+    while(true) {
+        if (all(loop_bound_34 == uint2(0u, 0u))) { break; }
+        loop_bound_34 -= uint2(loop_bound_34.y == 0u, 1u);
+        if (!loop_init_33) {
+            uint _e36 = index_18;
+            index_18 = (_e36 + 1u);
+        }
+        loop_init_33 = false;
+        uint _e10 = index_18;
+        if ((_e10 < VOL_IN_WEIGHT_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e13 = index_18;
+            float share = (float((_e13 + 1u)) / 5.0);
+            float height_1 = (share * reach);
+            const float _e20 = vol_in_distance_above(contact_2, height_1, sides_7);
+            float lack = max(((height_1 - _e20) / height_1), 0.0);
+            float _e25 = hidden;
+            uint _e26 = index_18;
+            float _e28 = weights_3[min(uint(_e26), 4u)];
+            hidden = (_e25 + (_e28 * min((0.5 * lack), 1.0)));
+        }
+    }
+    float _e38 = hidden;
+    return (1.0 - min((_e38 / VOL_IN_WEIGHT_SUM), 1.0));
+}
+
+float3 vol_in_answer(Vol_in_Response response, Vol_in_Contact contact_3, Vol_in_Arriving lamp_1, float cosine, float3 direction_1)
+{
+    float3 mirrored = ((contact_3.normal * (2.0 * cosine)) - lamp_1.direction);
+    const float _e12 = vol_in_dot3_(mirrored, -(direction_1));
+    const float _e14 = vol_in_power(_e12, response.shininess);
+    return ((response.diffuse * cosine) + (response.specular * _e14));
+}
+
+float3 vol_in_shade(Vol_in_Ray ray_29, Vol_in_Contact contact_4)
+{
+    float3 color = (float3)0;
+    uint light_1 = 0u;
+    float3 seen = (float3)0;
+
+    const uint _e3 = vol_in_object_word(contact_4.solid);
+    const float _e4 = vol_frame_word(_e3);
+    if ((_e4 == VOL_IN_SHOWS_NORMALS)) {
+        return ((contact_4.normal + (1.0).xxx) * 0.5);
+    }
+    const Vol_in_Response _e15 = vol_in_object_surface(contact_4.solid, contact_4.position);
+    bool answers = (any((_e15.diffuse != (0.0).xxx)) | any((_e15.specular != (0.0).xxx)));
+    color = _e15.emitted;
+    const uint _e30 = vol_in_light_count();
+    uint count_6 = (answers ? _e30 : 0u);
+    uint2 loop_bound_35 = uint2(4294967295u, 4294967295u);
+    bool loop_init_34 = true;
+    while(true) {
+        if (all(loop_bound_35 == uint2(0u, 0u))) { break; }
+        loop_bound_35 -= uint2(loop_bound_35.y == 0u, 1u);
+        if (!loop_init_34) {
+            uint _e69 = light_1;
+            light_1 = (_e69 + 1u);
+        }
+        loop_init_34 = false;
+        uint _e34 = light_1;
+        if ((_e34 < count_6)) {
+        } else {
+            break;
+        }
+        {
+            uint _e36 = light_1;
+            const Vol_in_Arriving _e38 = vol_in_arriving(_e36, contact_4.position);
+            const float _e41 = vol_in_dot3_(contact_4.normal, _e38.direction);
+            if ((_e41 > 0.0)) {
+                const float3 _e44 = vol_in_surface_visibility(_e38, contact_4);
+                seen = _e44;
+                if (VOL_IN_OCCLUDING_LIGHTS) {
+                    uint _e49 = light_1;
+                    const float _e54 = vol_frame_word(((VOL_IN_AT_LIGHTS + (VOL_IN_LIGHT_WORDS * _e49)) + 9u));
+                    if ((_e54 > 0.0)) {
+                        float3 _e57 = seen;
+                        const float _e58 = vol_in_openness(contact_4, _e54);
+                        seen = (_e57 * _e58);
+                    }
+                }
+                float3 _e60 = color;
+                float3 _e62 = seen;
+                const float3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_29.direction);
+                color = (_e60 + ((_e38.irradiance * _e62) * _e65));
+            }
+        }
+    }
+    float3 _e71 = color;
+    return _e71;
+}
+
+Vol_in_Glow ConstructVol_in_Glow(float3 arg0, float3 arg1, float3 arg2, float3 arg3) {
+    Vol_in_Glow ret = (Vol_in_Glow)0;
+    ret.light = arg0;
+    ret.transmittance = arg1;
+    ret.coarse_light = arg2;
+    ret.coarse_transmittance = arg3;
+    return ret;
+}
+
+Vol_in_Glow vol_in_clear_glow()
+{
+    const Vol_in_Glow vol_in_glow = ConstructVol_in_Glow((0.0).xxx, (1.0).xxx, (0.0).xxx, (1.0).xxx);
+    return vol_in_glow;
+}
+
+void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10, float2 t_34, inout Vol_in_Panels panels)
+{
+    uint medium_10 = 0u;
+    float2 masses = (float2)0;
+    uint2 ends_3 = (uint2)0;
+    float2 stretch_1 = (float2)0;
+    uint kind_1 = (uint)0;
+    Vol_in_Interior interior = (Vol_in_Interior)0;
+    bool local_8 = (bool)0;
+
+    panels.depth = (0.0).xxx;
+    panels.some = false;
+    uint2 loop_bound_36 = uint2(4294967295u, 4294967295u);
+    bool loop_init_35 = true;
+    while(true) {
+        if (all(loop_bound_36 == uint2(0u, 0u))) { break; }
+        loop_bound_36 -= uint2(loop_bound_36.y == 0u, 1u);
+        if (!loop_init_35) {
+            uint _e165 = medium_10;
+            medium_10 = (_e165 + 1u);
+        }
+        loop_init_35 = false;
+        uint _e12 = medium_10;
+        if ((_e12 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e16 = medium_10;
+            float own_7 = comb_9.own[min(uint(_e16), 0u)];
+            uint _e19 = medium_10;
+            const Vol_in_Between _e20 = vol_in_find_walls(ray_30, _e19, comb_9, node_10, t_34);
+            float next_3 = _e20.next;
+            masses = (0.0).xx;
+            ends_3 = uint2(0u, 1u);
+            stretch_1 = t_34;
+            uint _e31 = medium_10;
+            panels.walls[min(uint(_e31), 0u)] = _e20.walls;
+            kind_1 = VOL_IN_AFTER;
+            uint2 loop_bound_37 = uint2(4294967295u, 4294967295u);
+            bool loop_init_36 = true;
+            while(true) {
+                if (all(loop_bound_37 == uint2(0u, 0u))) { break; }
+                loop_bound_37 -= uint2(loop_bound_37.y == 0u, 1u);
+                if (!loop_init_36) {
+                    uint _e102 = kind_1;
+                    kind_1 = (_e102 + 1u);
+                }
+                loop_init_36 = false;
+                uint _e36 = kind_1;
+                if ((_e36 < (VOL_IN_WALL + _e20.count))) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e41 = kind_1;
+                    bool is_wall_1 = (_e41 >= VOL_IN_WALL);
+                    uint _e44 = kind_1;
+                    uint wall_2 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
+                    float distance_16 = (is_wall_1 ? _e20.walls[min(uint(wall_2), 1u)] : t_34.y);
+                    interior = ConstructVol_in_Interior(0.0, (0.0).xxx, (0.0).xxx, (0.0).xxx);
+                    if (!(is_wall_1)) {
+                        local_8 = (next_3 < 0.0);
+                    } else {
+                        local_8 = true;
+                    }
+                    bool _e68 = local_8;
+                    if (_e68) {
+                        uint _e69 = medium_10;
+                        const float3 _e70 = vol_in_ray_at(ray_30, distance_16);
+                        const Vol_in_Interior _e71 = vol_in_medium_interior(_e69, _e70);
+                        interior = _e71;
+                    }
+                    uint _e73 = kind_1;
+                    uint _e76 = medium_10;
+                    Vol_in_Interior _e79 = interior;
+                    panels.interiors[min(uint(((_e73 * VOL_IN_MEDIUM_SLOTS) + _e76)), 3u)] = _e79;
+                    const bool _e80 = vol_in_wall_ends(own_7, wall_2);
+                    uint2 _e81 = ends_3;
+                    uint _e82 = kind_1;
+                    uint _e84 = ends_3.y;
+                    uint _e87 = ends_3.x;
+                    uint _e88 = kind_1;
+                    ends_3 = (is_wall_1 ? (_e80 ? uint2(_e87, _e88) : uint2(_e82, _e84)) : _e81);
+                    float2 _e92 = stretch_1;
+                    float _e94 = stretch_1.y;
+                    float _e97 = stretch_1.x;
+                    stretch_1 = (is_wall_1 ? (_e80 ? float2(_e97, distance_16) : float2(distance_16, _e94)) : _e92);
+                }
+            }
+            const bool _e104 = vol_in_has_panel(comb_9, node_10, t_34, own_7, _e20);
+            if (_e104) {
+                uint _e107 = ends_3.x;
+                uint _e110 = medium_10;
+                Vol_in_Interior first_6 = panels.interiors[min(uint(((_e107 * VOL_IN_MEDIUM_SLOTS) + _e110)), 3u)];
+                uint _e116 = ends_3.y;
+                uint _e119 = medium_10;
+                Vol_in_Interior last_7 = panels.interiors[min(uint(((_e116 * VOL_IN_MEDIUM_SLOTS) + _e119)), 3u)];
+                const bool2 _e123 = vol_in_open_ends(comb_9, node_10, t_34, own_7, next_3);
+                float _e125 = comb_9.step_;
+                float _e127 = stretch_1.y;
+                float _e129 = stretch_1.x;
+                const float2 _e134 = vol_in_panel_masses(_e125, (_e127 - _e129), float2(first_6.density, last_7.density), _e123);
+                masses = _e134;
+                float3 _e136 = panels.depth;
+                float _e139 = masses.x;
+                float _e143 = masses.y;
+                panels.depth = (_e136 + ((first_6.extinction * _e139) + (last_7.extinction * _e143)));
+            }
+            uint _e148 = medium_10;
+            uint2 _e150 = ends_3;
+            panels.ends[min(uint(_e148), 0u)] = _e150;
+            uint _e152 = medium_10;
+            float2 _e154 = masses;
+            panels.masses[min(uint(_e152), 0u)] = _e154;
+            bool _e157 = panels.some;
+            float2 _e158 = masses;
+            panels.some = (_e157 | any((_e158 > (0.0).xx)));
+        }
+    }
+    return;
+}
+
+float3 vol_in_visibility(Vol_in_Ray ray_31, float distance_10, float bias_2, uint grid_4)
+{
+    const float _e4 = vol_in_unblocked(ray_31, distance_10, bias_2);
+    const float3 _e5 = vol_in_through_media(ray_31, distance_10, _e4, grid_4);
+    return _e5;
+}
+
+float3 vol_in_place_visibility(Vol_in_Arriving lamp_2, float3 point_7, float t_35, inout float3 scatter[1])
+{
+    bool asked = false;
+    uint medium_11 = 0u;
+
+    uint2 loop_bound_38 = uint2(4294967295u, 4294967295u);
+    bool loop_init_37 = true;
+    while(true) {
+        if (all(loop_bound_38 == uint2(0u, 0u))) { break; }
+        loop_bound_38 -= uint2(loop_bound_38.y == 0u, 1u);
+        if (!loop_init_37) {
+            uint _e27 = medium_11;
+            medium_11 = (_e27 + 1u);
+        }
+        loop_init_37 = false;
+        uint _e8 = medium_11;
+        if ((_e8 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e11 = medium_11;
+            float3 _e13 = scatter[min(uint(_e11), 0u)];
+            bool scatters = any((_e13 > (0.0).xxx));
+            bool _e18 = asked;
+            uint _e19 = medium_11;
+            const uint _e20 = vol_in_medium_word(_e19);
+            const float _e21 = vol_frame_word(_e20);
+            asked = (_e18 | (scatters & (_e21 == VOL_IN_SHADOWED)));
+        }
+    }
+    bool _e29 = asked;
+    if ((_e29 & lamp_2.shadows)) {
+        const Vol_in_Ray _e33 = vol_in_new_ray(point_7, lamp_2.direction);
+        const float _e35 = vol_in_shadow_bias(t_35);
+        const float3 _e37 = vol_in_visibility(_e33, lamp_2.distance_, _e35, lamp_2.grid);
+        return _e37;
+    }
+    return (1.0).xxx;
+}
+
+float2 vol_in_turn(float3 toward_1, float3 direction_2)
+{
+    float3 apart = (toward_1 - direction_2);
+    float3 together = (toward_1 + direction_2);
+    const float _e4 = vol_in_dot3_(apart, apart);
+    const float _e7 = vol_in_dot3_(together, together);
+    return float2((0.5 * _e4), (0.5 * _e7));
+}
+
+void vol_in_scatter_light(Vol_in_Arriving lamp_3, float3 seen_1, float3 direction_3, inout float3 scatter_1[1], inout float3 source[1])
+{
+    uint medium_12 = 0u;
+
+    const float2 _e6 = vol_in_turn(lamp_3.direction, direction_3);
+    uint2 loop_bound_39 = uint2(4294967295u, 4294967295u);
+    bool loop_init_38 = true;
+    while(true) {
+        if (all(loop_bound_39 == uint2(0u, 0u))) { break; }
+        loop_bound_39 -= uint2(loop_bound_39.y == 0u, 1u);
+        if (!loop_init_38) {
+            uint _e43 = medium_12;
+            medium_12 = (_e43 + 1u);
+        }
+        loop_init_38 = false;
+        uint _e9 = medium_12;
+        if ((_e9 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e12 = medium_12;
+            const uint _e13 = vol_in_medium_word(_e12);
+            const float _e14 = vol_frame_word(_e13);
+            uint _e15 = medium_12;
+            float3 part_6 = scatter_1[min(uint(_e15), 0u)];
+            if ((any((part_6 > (0.0).xxx)) & (_e14 > VOL_IN_UNLIT))) {
+                uint _e25 = medium_12;
+                const float _e28 = vol_in_medium_phase(_e25, _e6.x, _e6.y);
+                float3 arrives = ((_e14 == VOL_IN_UNSHADOWED) ? (1.0).xxx : seen_1);
+                uint _e34 = medium_12;
+                float3 _e36 = source[min(uint(_e34), 0u)];
+                source[min(uint(_e34), 0u)] = (_e36 + ((part_6 * _e28) * (lamp_3.irradiance * arrives)));
+            }
+        }
+    }
+    return;
+}
+
+void vol_in_light_place(Vol_in_Ray ray_32, float t_36, inout float3 scatter_2[1], inout float3 source_1[1])
+{
+    uint light_2 = 0u;
+
+    const float3 _e4 = vol_in_ray_at(ray_32, t_36);
+    const uint _e5 = vol_in_light_count();
+    uint2 loop_bound_40 = uint2(4294967295u, 4294967295u);
+    bool loop_init_39 = true;
+    while(true) {
+        if (all(loop_bound_40 == uint2(0u, 0u))) { break; }
+        loop_bound_40 -= uint2(loop_bound_40.y == 0u, 1u);
+        if (!loop_init_39) {
+            uint _e15 = light_2;
+            light_2 = (_e15 + 1u);
+        }
+        loop_init_39 = false;
+        uint _e8 = light_2;
+        if ((_e8 < _e5)) {
+        } else {
+            break;
+        }
+        {
+            uint _e10 = light_2;
+            const Vol_in_Arriving _e11 = vol_in_arriving(_e10, _e4);
+            const float3 _e12 = vol_in_place_visibility(_e11, _e4, t_36, scatter_2);
+            vol_in_scatter_light(_e11, _e12, ray_32.direction, scatter_2, source_1);
+        }
+    }
+    return;
+}
+
+typedef float3 ret_ZeroValuearray1_float3_[1];
+ret_ZeroValuearray1_float3_ ZeroValuearray1_float3_() {
+    return (float3[1])0;
+}
+
+bool vol_in_light_ends(Vol_in_Ray ray_33, float2 t_37, inout Vol_in_Panels panels_1)
+{
+    bool lit_after = false;
+    uint place_2 = 0u;
+    float distance_11 = (float)0;
+    bool wanted_1 = (bool)0;
+    float3 scatter_3[1] = (float3[1])0;
+    float3 source_2[1] = (float3[1])0;
+    uint medium_13 = (uint)0;
+    uint medium_14 = (uint)0;
+
+    uint2 loop_bound_41 = uint2(4294967295u, 4294967295u);
+    bool loop_init_40 = true;
+    while(true) {
+        if (all(loop_bound_41 == uint2(0u, 0u))) { break; }
+        loop_bound_41 -= uint2(loop_bound_41.y == 0u, 1u);
+        if (!loop_init_40) {
+            uint _e139 = place_2;
+            place_2 = (_e139 + 1u);
+        }
+        loop_init_40 = false;
+        uint _e7 = place_2;
+        if ((_e7 < 4u)) {
+        } else {
+            break;
+        }
+        {
+            uint _e10 = place_2;
+            bool is_wall_2 = (_e10 >= VOL_IN_WALL);
+            uint _e13 = place_2;
+            uint wall_3 = naga_mod((max(_e13, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
+            uint _e20 = place_2;
+            uint owner = naga_div((max(_e20, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
+            uint _e27 = place_2;
+            uint kind_2 = (is_wall_2 ? (VOL_IN_WALL + wall_3) : _e27);
+            distance_11 = ((kind_2 == VOL_IN_BEFORE) ? t_37.x : t_37.y);
+            wanted_1 = false;
+            scatter_3 = ZeroValuearray1_float3_();
+            source_2 = ZeroValuearray1_float3_();
+            medium_13 = 0u;
+            uint2 loop_bound_42 = uint2(4294967295u, 4294967295u);
+            bool loop_init_41 = true;
+            while(true) {
+                if (all(loop_bound_42 == uint2(0u, 0u))) { break; }
+                loop_bound_42 -= uint2(loop_bound_42.y == 0u, 1u);
+                if (!loop_init_41) {
+                    uint _e102 = medium_13;
+                    medium_13 = (_e102 + 1u);
+                }
+                loop_init_41 = false;
+                uint _e45 = medium_13;
+                if ((_e45 < VOL_IN_MEDIUM_COUNT)) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e49 = medium_13;
+                    uint2 ends_5 = panels_1.ends[min(uint(_e49), 0u)];
+                    uint _e53 = medium_13;
+                    bool own_8 = (!(is_wall_2) | (_e53 == owner));
+                    uint _e61 = medium_13;
+                    float2 _e63 = panels_1.masses[min(uint(_e61), 0u)];
+                    bool asks = ((own_8 & any((ends_5 == (kind_2).xx))) & any((_e63 > (0.0).xx)));
+                    bool _e69 = wanted_1;
+                    wanted_1 = (_e69 | asks);
+                    uint _e71 = medium_13;
+                    scatter_3[min(uint(_e71), 0u)] = (0.0).xxx;
+                    uint _e75 = medium_13;
+                    source_2[min(uint(_e75), 0u)] = (0.0).xxx;
+                    if ((!(is_wall_2) | asks)) {
+                        uint _e84 = medium_13;
+                        Vol_in_Interior interior_1 = panels_1.interiors[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e84)), 3u)];
+                        uint _e88 = medium_13;
+                        scatter_3[min(uint(_e88), 0u)] = interior_1.scattering;
+                        uint _e91 = medium_13;
+                        source_2[min(uint(_e91), 0u)] = interior_1.emission;
+                        float _e94 = distance_11;
+                        uint _e96 = medium_13;
+                        float _e99 = panels_1.walls[min(uint(_e96), 0u)][min(uint(wall_3), 1u)];
+                        distance_11 = (is_wall_2 ? _e99 : _e94);
+                    }
+                }
+            }
+            bool _e104 = wanted_1;
+            bool _e108 = panels_1.lit_;
+            if ((_e104 & !(((kind_2 == VOL_IN_BEFORE) & _e108)))) {
+                float _e112 = distance_11;
+                vol_in_light_place(ray_33, _e112, scatter_3, source_2);
+                bool _e113 = lit_after;
+                lit_after = (_e113 | (kind_2 == VOL_IN_AFTER));
+                medium_14 = 0u;
+                uint2 loop_bound_43 = uint2(4294967295u, 4294967295u);
+                bool loop_init_42 = true;
+                while(true) {
+                    if (all(loop_bound_43 == uint2(0u, 0u))) { break; }
+                    loop_bound_43 -= uint2(loop_bound_43.y == 0u, 1u);
+                    if (!loop_init_42) {
+                        uint _e136 = medium_14;
+                        medium_14 = (_e136 + 1u);
+                    }
+                    loop_init_42 = false;
+                    uint _e119 = medium_14;
+                    if ((_e119 < VOL_IN_MEDIUM_COUNT)) {
+                    } else {
+                        break;
+                    }
+                    {
+                        uint _e123 = medium_14;
+                        if ((!(is_wall_2) | (_e123 == owner))) {
+                            uint _e129 = medium_14;
+                            uint _e132 = medium_14;
+                            float3 _e134 = source_2[min(uint(_e132), 0u)];
+                            panels_1.sources[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e129)), 3u)] = _e134;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    bool _e141 = lit_after;
+    return _e141;
+}
+
+int naga_mod(int lhs, int rhs) {
+    int divisor = ((lhs == int(-2147483647 - 1) & rhs == -1) | (rhs == 0)) ? 1 : rhs;
+    return lhs - (lhs / divisor) * divisor;
+}
+
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_7, int node_11, Vol_in_Chunk chunk)
+{
+    Vol_in_Glow glow = (Vol_in_Glow)0;
+
+    glow = before_7;
+    const float3 _e5 = vol_in_decay3_(chunk.depth);
+    float3 _e7 = glow.light;
+    float3 _e9 = glow.transmittance;
+    glow.light = (_e7 + (_e9 * chunk.sent));
+    float3 _e15 = glow.transmittance;
+    glow.transmittance = (_e15 * _e5);
+    if ((naga_mod(node_11, int(2)) == int(0))) {
+        float3 twice = (chunk.sent * ((1.0).xxx + _e5));
+        float3 _e27 = glow.coarse_light;
+        float3 _e29 = glow.coarse_transmittance;
+        glow.coarse_light = (_e27 + (_e29 * twice));
+        float3 _e34 = glow.coarse_transmittance;
+        glow.coarse_transmittance = (_e34 * (_e5 * _e5));
+    }
+    Vol_in_Glow _e37 = glow;
+    const Vol_in_Glow vol_in_glow_1 = _e37;
+    return vol_in_glow_1;
+}
+
+float3 vol_in_panel_sent(float2 masses_1, float3 start, float3 end_10, float3 depth_5)
+{
+    const float3 _e4 = vol_in_mean_decay3_(depth_5);
+    float3 steady = (start * _e4);
+    const float3 _e7 = vol_in_decay_moment3_(depth_5);
+    float3 change = ((end_10 - start) * _e7);
+    float3 thick = ((steady + change) * (masses_1.x + masses_1.y));
+    const float3 _e16 = vol_in_decay3_(depth_5);
+    float3 thin = ((start * masses_1.x) + ((end_10 * _e16) * masses_1.y));
+    float3 rise_4 = min(max(((depth_5 - (0.125).xxx) * 2.6666667), (0.0).xxx), (1.0).xxx);
+    return (thin + ((thick - thin) * rise_4));
+}
+
+float3 vol_in_panels_sent(inout Vol_in_Panels panels_2)
+{
+    float3 sent = (0.0).xxx;
+    uint medium_15 = 0u;
+
+    float3 depth_8 = panels_2.depth;
+    uint2 loop_bound_44 = uint2(4294967295u, 4294967295u);
+    bool loop_init_43 = true;
+    while(true) {
+        if (all(loop_bound_44 == uint2(0u, 0u))) { break; }
+        loop_bound_44 -= uint2(loop_bound_44.y == 0u, 1u);
+        if (!loop_init_43) {
+            uint _e43 = medium_15;
+            medium_15 = (_e43 + 1u);
+        }
+        loop_init_43 = false;
+        uint _e8 = medium_15;
+        if ((_e8 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e12 = medium_15;
+            float2 masses_2 = panels_2.masses[min(uint(_e12), 0u)];
+            if (any((masses_2 > (0.0).xx))) {
+                uint _e20 = medium_15;
+                uint2 ends_6 = panels_2.ends[min(uint(_e20), 0u)];
+                uint _e27 = medium_15;
+                float3 start_3 = panels_2.sources[min(uint(((ends_6.x * VOL_IN_MEDIUM_SLOTS) + _e27)), 3u)];
+                uint _e35 = medium_15;
+                float3 end_19 = panels_2.sources[min(uint(((ends_6.y * VOL_IN_MEDIUM_SLOTS) + _e35)), 3u)];
+                float3 _e39 = sent;
+                const float3 _e40 = vol_in_panel_sent(masses_2, start_3, end_19, depth_8);
+                sent = (_e39 + _e40);
+            }
+        }
+    }
+    float3 _e45 = sent;
+    return _e45;
+}
+
+Vol_in_Chunk ConstructVol_in_Chunk(float3 arg0, float3 arg1) {
+    Vol_in_Chunk ret = (Vol_in_Chunk)0;
+    ret.sent = arg0;
+    ret.depth = arg1;
+    return ret;
+}
+
+Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_34, float end_11)
+{
+    Vol_in_Glow glow_1 = (Vol_in_Glow)0;
+    Vol_in_Comb comb_10 = (Vol_in_Comb)0;
+    Vol_in_Panels panels_3 = (Vol_in_Panels)0;
+    int node_12 = (int)0;
+    bool lit_after_1 = (bool)0;
+    uint medium_16 = (uint)0;
+
+    const Vol_in_Glow _e2 = vol_in_clear_glow();
+    glow_1 = _e2;
+    const float _e5 = vol_frame_word(VOL_IN_AT_STEP);
+    const Vol_in_Comb _e6 = vol_in_new_comb(ray_34, end_11, _e5);
+    comb_10 = _e6;
+    panels_3.lit_ = false;
+    int _e12 = comb_10.first;
+    node_12 = asint(asuint(_e12) - asuint(int(1)));
+    uint2 loop_bound_45 = uint2(4294967295u, 4294967295u);
+    bool loop_init_44 = true;
+    while(true) {
+        if (all(loop_bound_45 == uint2(0u, 0u))) { break; }
+        loop_bound_45 -= uint2(loop_bound_45.y == 0u, 1u);
+        if (!loop_init_44) {
+            int _e74 = node_12;
+            node_12 = asint(asuint(_e74) + asuint(int(1)));
+        }
+        loop_init_44 = false;
+        int _e16 = node_12;
+        int _e18 = comb_10.last;
+        if ((_e16 <= _e18)) {
+        } else {
+            break;
+        }
+        {
+            int _e20 = node_12;
+            const float _e21 = vol_in_panel_node(comb_10, _e20);
+            int _e22 = node_12;
+            const float _e25 = vol_in_panel_node(comb_10, asint(asuint(_e22) + asuint(int(1))));
+            float2 t_42 = float2(_e21, _e25);
+            int _e27 = node_12;
+            vol_in_find_panels(ray_34, comb_10, _e27, t_42, panels_3);
+            lit_after_1 = false;
+            bool _e31 = panels_3.some;
+            if (_e31) {
+                const bool _e32 = vol_in_light_ends(ray_34, t_42, panels_3);
+                lit_after_1 = _e32;
+                Vol_in_Glow _e33 = glow_1;
+                int _e34 = node_12;
+                const float3 _e35 = vol_in_panels_sent(panels_3);
+                float3 _e37 = panels_3.depth;
+                const Vol_in_Glow _e39 = vol_in_gather(_e33, _e34, ConstructVol_in_Chunk(_e35, _e37));
+                glow_1 = _e39;
+            }
+            float3 _e41 = glow_1.transmittance;
+            const float _e42 = vol_in_largest(_e41);
+            if ((_e42 < VOL_IN_STOP)) {
+                break;
+            }
+            bool _e46 = lit_after_1;
+            panels_3.lit_ = _e46;
+            medium_16 = 0u;
+            uint2 loop_bound_46 = uint2(4294967295u, 4294967295u);
+            bool loop_init_45 = true;
+            while(true) {
+                if (all(loop_bound_46 == uint2(0u, 0u))) { break; }
+                loop_bound_46 -= uint2(loop_bound_46.y == 0u, 1u);
+                if (!loop_init_45) {
+                    uint _e71 = medium_16;
+                    medium_16 = (_e71 + 1u);
+                }
+                loop_init_45 = false;
+                uint _e49 = medium_16;
+                if ((_e49 < VOL_IN_MEDIUM_COUNT)) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e53 = medium_16;
+                    uint _e57 = medium_16;
+                    Vol_in_Interior _e60 = panels_3.interiors[min(uint((VOL_IN_MEDIUM_SLOTS + _e57)), 3u)];
+                    panels_3.interiors[min(uint(_e53), 3u)] = _e60;
+                    uint _e62 = medium_16;
+                    uint _e66 = medium_16;
+                    float3 _e69 = panels_3.sources[min(uint((VOL_IN_MEDIUM_SLOTS + _e66)), 3u)];
+                    panels_3.sources[min(uint(_e62), 3u)] = _e69;
+                }
+            }
+        }
+    }
+    Vol_in_Glow _e76 = glow_1;
+    const Vol_in_Glow vol_in_glow_2 = _e76;
+    return vol_in_glow_2;
+}
+
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_35, float t_38, inout float weights_4[1])
+{
+    float3 depth_6 = (0.0).xxx;
+    float3 scatter_4[1] = (float3[1])0;
+    float3 source_3[1] = (float3[1])0;
+    uint medium_17 = 0u;
+    float3 sent_1 = (0.0).xxx;
+    uint medium_18 = 0u;
+
+    const float3 _e3 = vol_in_ray_at(ray_35, t_38);
+    uint2 loop_bound_47 = uint2(4294967295u, 4294967295u);
+    bool loop_init_46 = true;
+    while(true) {
+        if (all(loop_bound_47 == uint2(0u, 0u))) { break; }
+        loop_bound_47 -= uint2(loop_bound_47.y == 0u, 1u);
+        if (!loop_init_46) {
+            uint _e46 = medium_17;
+            medium_17 = (_e46 + 1u);
+        }
+        loop_init_46 = false;
+        uint _e11 = medium_17;
+        if ((_e11 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            uint _e14 = medium_17;
+            float weight_2 = weights_4[min(uint(_e14), 0u)];
+            uint _e17 = medium_17;
+            scatter_4[min(uint(_e17), 0u)] = (0.0).xxx;
+            uint _e21 = medium_17;
+            source_3[min(uint(_e21), 0u)] = (0.0).xxx;
+            if ((weight_2 > 0.0)) {
+                uint _e27 = medium_17;
+                const Vol_in_Interior _e28 = vol_in_medium_interior(_e27, _e3);
+                float mass_1 = (max(_e28.density, 0.0) * weight_2);
+                float3 _e33 = depth_6;
+                depth_6 = (_e33 + (_e28.extinction * mass_1));
+                uint _e37 = medium_17;
+                scatter_4[min(uint(_e37), 0u)] = (_e28.scattering * mass_1);
+                uint _e41 = medium_17;
+                source_3[min(uint(_e41), 0u)] = (_e28.emission * mass_1);
+            }
+        }
+    }
+    vol_in_light_place(ray_35, t_38, scatter_4, source_3);
+    uint2 loop_bound_48 = uint2(4294967295u, 4294967295u);
+    bool loop_init_47 = true;
+    while(true) {
+        if (all(loop_bound_48 == uint2(0u, 0u))) { break; }
+        loop_bound_48 -= uint2(loop_bound_48.y == 0u, 1u);
+        if (!loop_init_47) {
+            uint _e65 = medium_18;
+            medium_18 = (_e65 + 1u);
+        }
+        loop_init_47 = false;
+        uint _e53 = medium_18;
+        if ((_e53 < VOL_IN_MEDIUM_COUNT)) {
+        } else {
+            break;
+        }
+        {
+            float3 _e56 = sent_1;
+            uint _e57 = medium_18;
+            float3 _e59 = source_3[min(uint(_e57), 0u)];
+            float3 _e60 = depth_6;
+            const float3 _e61 = vol_in_mean_decay3_(_e60);
+            sent_1 = (_e56 + (_e59 * _e61));
+        }
+    }
+    float3 _e67 = sent_1;
+    float3 _e68 = depth_6;
+    const Vol_in_Chunk vol_in_chunk = ConstructVol_in_Chunk(_e67, _e68);
+    return vol_in_chunk;
+}
+
+Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_36, float end_12)
+{
+    Vol_in_Glow glow_2 = (Vol_in_Glow)0;
+    Vol_in_Comb comb_11 = (Vol_in_Comb)0;
+    float weights_5[1] = (float[1])0;
+    int node_13 = (int)0;
+
+    const Vol_in_Glow _e2 = vol_in_clear_glow();
+    glow_2 = _e2;
+    const float _e5 = vol_frame_word(VOL_IN_AT_STEP);
+    const Vol_in_Comb _e6 = vol_in_new_comb(ray_36, end_12, _e5);
+    comb_11 = _e6;
+    int _e10 = comb_11.first;
+    node_13 = asint(asuint(_e10) - asuint(int(2)));
+    uint2 loop_bound_49 = uint2(4294967295u, 4294967295u);
+    bool loop_init_48 = true;
+    while(true) {
+        if (all(loop_bound_49 == uint2(0u, 0u))) { break; }
+        loop_bound_49 -= uint2(loop_bound_49.y == 0u, 1u);
+        if (!loop_init_48) {
+            int _e36 = node_13;
+            node_13 = asint(asuint(_e36) + asuint(int(1)));
+        }
+        loop_init_48 = false;
+        int _e14 = node_13;
+        int _e16 = comb_11.last;
+        if ((_e14 <= _e16)) {
+        } else {
+            break;
+        }
+        {
+            int _e18 = node_13;
+            const bool _e19 = vol_in_weigh(ray_36, comb_11, _e18, weights_5);
+            if (_e19) {
+                Vol_in_Glow _e20 = glow_2;
+                int _e21 = node_13;
+                int _e22 = node_13;
+                float _e24 = comb_11.step_;
+                float _e26 = comb_11.offset;
+                const float _e27 = vol_in_node_distance(_e22, _e24, _e26);
+                const Vol_in_Chunk _e28 = vol_in_node_chunk(ray_36, _e27, weights_5);
+                const Vol_in_Glow _e29 = vol_in_gather(_e20, _e21, _e28);
+                glow_2 = _e29;
+            }
+            float3 _e31 = glow_2.transmittance;
+            const float _e32 = vol_in_largest(_e31);
+            if ((_e32 < VOL_IN_STOP)) {
+                break;
+            }
+        }
+    }
+    Vol_in_Glow _e38 = glow_2;
+    const Vol_in_Glow vol_in_glow_3 = _e38;
+    return vol_in_glow_3;
+}
+
+Vol_in_Glow vol_in_march(Vol_in_Ray ray_37, float end_13)
+{
+    if (VOL_IN_CORRECTED) {
+        const Vol_in_Glow _e3 = vol_in_march_panels(ray_37, end_13);
+        const Vol_in_Glow vol_in_glow_4 = _e3;
+        return vol_in_glow_4;
+    }
+    const Vol_in_Glow _e4 = vol_in_march_nodes(ray_37, end_13);
+    const Vol_in_Glow vol_in_glow_5 = _e4;
+    return vol_in_glow_5;
+}
+
+Vol_in_Radiance ConstructVol_in_Radiance(float3 arg0, float3 arg1, float arg2, float arg3) {
+    Vol_in_Radiance ret = (Vol_in_Radiance)0;
+    ret.color = arg0;
+    ret.transmittance = arg1;
+    ret.depth = arg2;
+    ret.doubt = arg3;
+    return ret;
+}
+
+Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_38)
+{
+    float3 behind = (float3)0;
+    float end_14 = VOL_IN_FAR;
+    float depth_7 = VOL_IN_NO_DEPTH;
+
+    const Vol_in_Contact _e1 = vol_in_trace(ray_38);
+    const float3 _e3 = vol_in_word3_(VOL_IN_AT_BACKGROUND);
+    behind = _e3;
+    if (_e1.hit) {
+        const float3 _e10 = vol_in_shade(ray_38, _e1);
+        behind = _e10;
+        end_14 = _e1.t;
+        const float3 _e15 = vol_in_word3_(VOL_IN_AT_FORWARD);
+        const float _e16 = vol_in_dot3_(ray_38.direction, _e15);
+        depth_7 = (_e1.t * _e16);
+    }
+    float _e18 = end_14;
+    const Vol_in_Glow _e19 = vol_in_march(ray_38, _e18);
+    float3 _e22 = behind;
+    float3 coarse = (_e19.coarse_light + (_e19.coarse_transmittance * _e22));
+    float3 _e27 = behind;
+    float3 color_2 = (_e19.light + (_e19.transmittance * _e27));
+    const float _e31 = vol_in_length3_((coarse - color_2));
+    float doubt = (_e31 * VOL_IN_ROOT_THIRD);
+    float _e39 = depth_7;
+    const Vol_in_Radiance vol_in_radiance_1 = ConstructVol_in_Radiance(color_2, (_e1.hit ? (0.0).xxx : _e19.transmittance), _e39, doubt);
+    return vol_in_radiance_1;
+}
+
+float2 vol_in_place_in_pixel(uint index_19)
+{
+    uint step_1 = naga_div((index_19 + 1u), 2u);
+    uint signed_ = ((naga_mod(index_19, 2u) == 1u) ? step_1 : (0u - step_1));
+    uint2 place_9 = ((((signed_).xx * VOL_IN_STRIDE) + (2147483648u).xx) >> (16u).xx);
+    return (float2(place_9) * 1.5258789e-5);
+}
+
+Vol_in_Ray vol_in_camera_ray(float2 place_3)
+{
+    const float _e5 = vol_frame_word(VOL_IN_AT_SIZE);
+    float u_5 = (((2.0 * place_3.x) / _e5) - 1.0);
+    const float _e13 = vol_frame_word(5u);
+    float v_8 = (1.0 - ((2.0 * place_3.y) / _e13));
+    const float3 _e18 = vol_in_word3_(VOL_IN_AT_FORWARD);
+    const float3 _e20 = vol_in_word3_(VOL_IN_AT_RIGHT);
+    float3 sideways = (_e18 + (_e20 * u_5));
+    const float3 _e24 = vol_in_word3_(VOL_IN_AT_UP);
+    float3 toward_4 = (sideways + (_e24 * v_8));
+    const float3 _e28 = vol_in_word3_(VOL_IN_AT_EYE);
+    const float _e29 = vol_in_length3_(toward_4);
+    const Vol_in_Ray _e32 = vol_in_new_ray(_e28, (toward_4 / (_e29).xxx));
+    const Vol_in_Ray vol_in_ray_2 = _e32;
+    return vol_in_ray_2;
+}
+
+float vol_in_comb_shift(uint2 pixel, uint index_20)
+{
+    uint place_10 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_10 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+}
+
+Vol_in_Ray vol_in_pixel_ray(uint2 pixel_1, uint index_21, uint corner)
+{
+    Vol_in_Ray ray_39 = (Vol_in_Ray)0;
+
+    bool is_probe = (corner < VOL_IN_NO_CORNER);
+    const float2 _e5 = vol_in_place_in_pixel(index_21);
+    float2 aside_2 = (is_probe ? float2(uint2(naga_mod(corner, 2u), naga_div(corner, 2u))) : _e5);
+    const Vol_in_Ray _e15 = vol_in_camera_ray((float2(pixel_1) + aside_2));
+    ray_39 = _e15;
+    const float _e18 = vol_in_comb_shift(pixel_1, index_21);
+    ray_39.shift = (is_probe ? 0.0 : _e18);
+    Vol_in_Ray _e21 = ray_39;
+    const Vol_in_Ray vol_in_ray_3 = _e21;
+    return vol_in_ray_3;
+}
+
+Vol_in_Mean vol_in_add_probe(Vol_in_Mean old, Vol_in_Radiance probe_1)
+{
+    Vol_in_Mean mean_2 = (Vol_in_Mean)0;
+
+    mean_2 = old;
+    float3 _e5 = mean_2.color;
+    float3 color_3 = (probe_1.color - _e5);
+    float _e9 = mean_2.color_spread;
+    const float _e10 = vol_in_dot3_(color_3, color_3);
+    mean_2.color_spread = (_e9 + _e10);
+    float3 _e14 = mean_2.transmittance;
+    float3 transmittance_1 = (probe_1.transmittance - _e14);
+    float _e18 = mean_2.transmittance_spread;
+    const float _e19 = vol_in_dot3_(transmittance_1, transmittance_1);
+    mean_2.transmittance_spread = (_e18 + _e19);
+    Vol_in_Mean _e21 = mean_2;
+    const Vol_in_Mean vol_in_mean = _e21;
+    return vol_in_mean;
+}
+
+Vol_in_Mean vol_in_add_sample(Vol_in_Mean old_1, Vol_in_Radiance sample_)
+{
+    Vol_in_Mean mean_3 = (Vol_in_Mean)0;
+
+    mean_3 = old_1;
+    uint _e4 = mean_3.count;
+    mean_3.count = (_e4 + 1u);
+    uint _e8 = mean_3.count;
+    if ((_e8 == 1u)) {
+        mean_3.color = sample_.color;
+        mean_3.transmittance = sample_.transmittance;
+        mean_3.depth = sample_.depth;
+        mean_3.doubt = sample_.doubt;
+        Vol_in_Mean _e19 = mean_3;
+        const Vol_in_Mean vol_in_mean_1 = _e19;
+        return vol_in_mean_1;
+    }
+    uint _e21 = mean_3.count;
+    float share_1 = (1.0 / float(_e21));
+    float _e27 = mean_3.doubt;
+    float _e30 = mean_3.doubt;
+    mean_3.doubt = (_e27 + ((sample_.doubt - _e30) * share_1));
+    float3 _e36 = mean_3.color;
+    float3 color_4 = (sample_.color - _e36);
+    float3 _e40 = mean_3.color;
+    mean_3.color = (_e40 + (color_4 * share_1));
+    float _e45 = mean_3.color_spread;
+    float3 _e48 = mean_3.color;
+    const float _e50 = vol_in_dot3_(color_4, (sample_.color - _e48));
+    mean_3.color_spread = (_e45 + _e50);
+    float3 _e54 = mean_3.transmittance;
+    float3 transmittance_2 = (sample_.transmittance - _e54);
+    float3 _e58 = mean_3.transmittance;
+    mean_3.transmittance = (_e58 + (transmittance_2 * share_1));
+    float3 _e63 = mean_3.transmittance;
+    float3 from_new = (sample_.transmittance - _e63);
+    float _e67 = mean_3.transmittance_spread;
+    const float _e68 = vol_in_dot3_(transmittance_2, from_new);
+    mean_3.transmittance_spread = (_e67 + _e68);
+    Vol_in_Mean _e70 = mean_3;
+    const Vol_in_Mean vol_in_mean_2 = _e70;
+    return vol_in_mean_2;
+}
+
+bool vol_in_is_probed()
+{
+    bool local_9 = (bool)0;
+
+    const float _e1 = vol_frame_word(VOL_IN_AT_TOLERANCE);
+    if ((_e1 > 0.0)) {
+        const float _e7 = vol_frame_word(VOL_IN_AT_SAMPLES);
+        local_9 = (naga_f2u32(_e7) > VOL_IN_FIRST_ROUND);
+    } else {
+        local_9 = false;
+    }
+    bool _e12 = local_9;
+    return _e12;
+}
+
+Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_8, uint last_4)
+{
+    Vol_in_Mean mean_4 = (Vol_in_Mean)0;
+    uint corner_1 = VOL_IN_NO_CORNER;
+    bool local_10 = (bool)0;
+    bool local_11 = (bool)0;
+    bool local_12 = (bool)0;
+
+    mean_4 = before_8;
+    uint2 loop_bound_50 = uint2(4294967295u, 4294967295u);
+    while(true) {
+        if (all(loop_bound_50 == uint2(0u, 0u))) { break; }
+        loop_bound_50 -= uint2(loop_bound_50.y == 0u, 1u);
+        uint _e6 = corner_1;
+        if (!((_e6 < VOL_IN_NO_CORNER))) {
+            uint _e13 = mean_4.count;
+            if ((_e13 < last_4)) {
+                Vol_in_Mean _e17 = mean_4;
+                const bool _e18 = vol_in_is_done(_e17);
+                local_11 = !(_e18);
+            } else {
+                local_11 = false;
+            }
+            bool _e21 = local_11;
+            local_10 = _e21;
+        } else {
+            local_10 = true;
+        }
+        bool _e23 = local_10;
+        if (_e23) {
+        } else {
+            break;
+        }
+        {
+            uint _e24 = corner_1;
+            bool is_probe_1 = (_e24 < VOL_IN_NO_CORNER);
+            uint _e28 = mean_4.count;
+            uint _e29 = corner_1;
+            const Vol_in_Ray _e30 = vol_in_pixel_ray(pixel_2, _e28, _e29);
+            const Vol_in_Radiance _e31 = vol_in_radiance(_e30);
+            if (is_probe_1) {
+                Vol_in_Mean _e32 = mean_4;
+                const Vol_in_Mean _e33 = vol_in_add_probe(_e32, _e31);
+                mean_4 = _e33;
+                uint _e34 = corner_1;
+                corner_1 = (_e34 + 1u);
+            } else {
+                Vol_in_Mean _e37 = mean_4;
+                const Vol_in_Mean _e38 = vol_in_add_sample(_e37, _e31);
+                mean_4 = _e38;
+                const bool _e41 = vol_in_is_probed();
+                if (_e41) {
+                    uint _e45 = mean_4.count;
+                    local_12 = (_e45 == VOL_IN_FIRST_ROUND);
+                } else {
+                    local_12 = false;
+                }
+                bool _e49 = local_12;
+                corner_1 = (_e49 ? 0u : VOL_IN_NO_CORNER);
+            }
+        }
+    }
+    Vol_in_Mean _e51 = mean_4;
+    const Vol_in_Mean vol_in_mean_3 = _e51;
+    return vol_in_mean_3;
+}
+
+float vol_distance(float3 p_22)
+{
+    float nearest = VOL_IN_FAR;
+
+    float _e3 = nearest;
+    return _e3;
+}
+
+float vol_density(float3 p_23)
+{
+    float sum_4 = 0.0;
+
+    float _e3 = sum_4;
+    const float _e7 = vol_f7_density_cloud(p_23.x, p_23.y, p_23.z);
+    sum_4 = (_e3 + max(_e7, 0.0));
+    float _e11 = sum_4;
+    return _e11;
+}
+
+float4 vol_radiance(float3 origin_1, float3 direction_4)
+{
+    const float _e2 = vol_in_length3_(direction_4);
+    const Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / (_e2).xxx));
+    const Vol_in_Radiance _e6 = vol_in_radiance(_e5);
+    float3 t_43 = _e6.transmittance;
+    float clear_3 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
+    return float4(_e6.color, (1.0 - clear_3));
+}
+
+float4 vol_pixel(float2 place_4)
+{
+    const Vol_in_Ray _e1 = vol_in_camera_ray(place_4);
+    const Vol_in_Radiance _e2 = vol_in_radiance(_e1);
+    float3 t_44 = _e2.transmittance;
+    float clear_4 = (((t_44.x + t_44.y) + t_44.z) * 0.33333334);
+    return float4(_e2.color, (1.0 - clear_4));
+}
+
+float vol_distance_cloud(float3 p_24)
+{
+    const float _e4 = vol_f2_region_cloud(p_24.x, p_24.y, p_24.z);
+    return _e4;
+}
+
+float vol_density_cloud(float3 p_25)
+{
+    const float _e4 = vol_f7_density_cloud(p_25.x, p_25.y, p_25.z);
+    return _e4;
+}
+
+float3 vol_colour_cloud(float3 p_26)
+{
+    const float3 _e4 = vol_f8_colour_cloud(p_26.x, p_26.y, p_26.z);
+    return _e4;
+}
+
+float3 vol_local_cloud(float3 p_27)
+{
+    const float3 _e4 = vol_f9_local_cloud(p_27.x, p_27.y, p_27.z);
+    return _e4;
+}
+

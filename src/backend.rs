@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use vol_compiler::frame::{Counts, Frame, Image, Job};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
-use vol_compiler::wgsl::Arithmetic;
+use vol_compiler::wgsl::{Arithmetic, render};
 use vol_runtime_cpu::interp::{Evaluator, Tapes};
 use vol_runtime_cpu::{Method, NoMajorant, PixelCost};
 
@@ -155,16 +155,30 @@ impl Device {
         }
     }
 
-    /// Compiles a program for this device; of use for all its frames.
+    /// [`Device::prepare_with`] the usual workgroups.
     ///
     /// # Errors
     /// A device failure.
     pub fn prepare<'a>(&'a self, program: &'a Program) -> Result<Renderer<'a>, Failure> {
+        self.prepare_with(program, render::WORKGROUP)
+    }
+
+    /// Compiles a program for this device; of use for all its frames. `workgroup` is the shape of a graphics device's
+    /// workgroups.
+    ///
+    /// # Errors
+    /// A device failure.
+    #[cfg_attr(not(feature = "gpu"), expect(unused_variables, reason = "the CPU has no workgroups"))]
+    pub fn prepare_with<'a>(
+        &'a self,
+        program: &'a Program,
+        workgroup: [u32; 2],
+    ) -> Result<Renderer<'a>, Failure> {
         let target = match self {
             Self::Cpu => Target::Cpu(PhantomData),
             #[cfg(feature = "gpu")]
             Self::Gpu(gpu) => {
-                let renderer = vol_runtime_gpu::Renderer::new(gpu, program);
+                let renderer = vol_runtime_gpu::Renderer::with_workgroup(gpu, program, workgroup);
                 Target::Gpu(gpu, renderer.map_err(|error| gpu_failure(&error))?)
             }
         };

@@ -86,6 +86,9 @@ pub(crate) struct Render {
     /// bit on a device whose single operations round correctly
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Shape of the GPU's workgroups, at most 256 invocations; no picture depends on it [default: 8x8]
+    #[arg(long, value_name = "WxH", value_parser = values::workgroup)]
+    pub(crate) workgroup: Option<Size>,
     /// Picture size in pixels instead of the scene's
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     pub(crate) size: Option<Size>,

@@ -207,7 +207,7 @@ fn frame_words(program: &Program) -> Vec<Place> {
 fn entry_points() -> Vec<EntryPoint> {
     let entry = |name, stage, workgroup_size| EntryPoint { name, stage, workgroup_size };
     vec![
-        entry("render", "compute", Some([8, 8, 1])),
+        entry("render", "compute", Some([render::WORKGROUP[0], render::WORKGROUP[1], 1])),
         entry("cover", "vertex", None),
         entry("paint", "fragment", None),
     ]

@@ -27,7 +27,7 @@ mod expr;
 pub mod layout;
 pub mod names;
 pub mod render;
-mod spirv;
+pub(crate) mod spirv;
 
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module};
@@ -150,13 +150,18 @@ fn evaluation(module: &Module, rows: &SceneRows<'_>, function: FunctionId) -> Re
 ///
 /// [`WgslError`] with naga's message.
 pub fn validate(wgsl: &str) -> Result<(), WgslError> {
+    read(wgsl).map(drop)
+}
+
+/// A text as naga understands it, for its writers.
+pub(crate) fn read(wgsl: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), WgslError> {
     let module = naga::front::wgsl::parse_str(wgsl)
         .map_err(|error| WgslError::Parse { message: error.emit_to_string(wgsl) })?;
     let (flags, capabilities) = (naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-    naga::valid::Validator::new(flags, capabilities)
+    let info = naga::valid::Validator::new(flags, capabilities)
         .validate(&module)
         .map_err(|error| WgslError::Validate { message: error.emit_to_string(wgsl) })?;
-    Ok(())
+    Ok((module, info))
 }
 
 /// The parts of the prelude that `text` needs, in order.

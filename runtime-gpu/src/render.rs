@@ -22,9 +22,6 @@ const LARGEST_TILE: u32 = 256;
 /// shorter than the seconds after which a driver resets the device.
 const DISPATCH_TIME: Duration = Duration::from_millis(60);
 
-/// Side of a workgroup of the render kernel, see `render.wgsl`.
-const GROUP_SIDE: u32 = 8;
-
 /// Invocations of a workgroup of the evaluation kernel.
 const EVALUATION_GROUP: u32 = 64;
 
@@ -35,16 +32,25 @@ pub struct Renderer {
     midpoint: OnceLock<Kernel>,
     /// For the corrected form.
     corrected: OnceLock<Kernel>,
+    workgroup: [u32; 2],
 }
 
 impl Renderer {
-    /// Prepares a program for a device. With media it is compiled with the first picture, since each
-    /// quadrature has a kernel of its own; else at once.
+    /// [`Renderer::with_workgroup`] with the usual shape.
     ///
     /// # Errors
     /// [`GpuError`] if the device refuses the shader.
     pub fn new(gpu: &Gpu, program: &Program) -> Result<Self, GpuError> {
-        let new = Self { midpoint: OnceLock::new(), corrected: OnceLock::new() };
+        Self::with_workgroup(gpu, program, wgsl::render::WORKGROUP)
+    }
+
+    /// Prepares a program for a device; `workgroup` is the shape of its workgroups, on which no picture depends. With media it is compiled with the first picture, since each
+    /// quadrature has a kernel of its own; else at once.
+    ///
+    /// # Errors
+    /// [`GpuError`] if the device refuses the shader.
+    pub fn with_workgroup(gpu: &Gpu, program: &Program, workgroup: [u32; 2]) -> Result<Self, GpuError> {
+        let new = Self { midpoint: OnceLock::new(), corrected: OnceLock::new(), workgroup };
         if program.media.is_empty() {
             new.kernel(gpu, program, Quadrature::Midpoint)?;
         }
@@ -60,7 +66,7 @@ impl Renderer {
         if let Some(kernel) = kernel.get() {
             return Ok(kernel);
         }
-        let shader = wgsl::render::render_module(program, quadrature).map_err(refused)?;
+        let shader = wgsl::render::render_module(program, quadrature, self.workgroup).map_err(refused)?;
         let compiled = gpu.kernel("render", &shader.text, "render", &shader.inputs)?;
         Ok(kernel.get_or_init(|| compiled))
     }
@@ -117,6 +123,7 @@ struct Picture<'a> {
     frame: &'a Frame,
     job: &'a Job,
     kernel: &'a Kernel,
+    workgroup: [u32; 2],
     scene: Vec<Buffer>,
     header: Buffer,
     input: Buffer,
@@ -137,7 +144,8 @@ impl<'a> Picture<'a> {
         let input = gpu.upload(&wgsl::render::input_words(frame))?;
         let [width, height] = job.size;
         let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
-        Ok(Self { gpu, program, frame, job, kernel, scene, header, input, output })
+        let workgroup = renderer.workgroup;
+        Ok(Self { gpu, program, frame, job, kernel, workgroup, scene, header, input, output })
     }
 
     /// Hands in at most `budget` more samples for each pixel of a tile.
@@ -145,7 +153,8 @@ impl<'a> Picture<'a> {
         let words = wgsl::render::frame_words(self.program, self.frame, self.job, tile, budget);
         self.gpu.write(&self.header, &words)?;
         let [_, _, width, height] = tile;
-        let groups = [width.div_ceil(GROUP_SIDE).max(1), height.div_ceil(GROUP_SIDE).max(1), 1];
+        let [columns, rows] = self.workgroup;
+        let groups = [width.div_ceil(columns).max(1), height.div_ceil(rows).max(1), 1];
         let inputs: Vec<&Buffer> = self.scene.iter().chain([&self.header, &self.input]).collect();
         self.gpu.dispatch(self.kernel, &inputs, &self.output, groups)
     }

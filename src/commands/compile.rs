@@ -18,6 +18,9 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     for path in arguments.output.iter().chain(&arguments.reflect) {
         atomic::probe(path)?;
     }
+    if arguments.output.is_some() && arguments.output == arguments.reflect {
+        return Err(Failure::usage("the shader and what is said of it cannot be one file"));
+    }
     let (language, form) = (language(arguments.target), form(arguments));
     let prepared = Prepared::new(&arguments.scene)?;
     let (frame, job) = moment(&prepared, arguments)?;

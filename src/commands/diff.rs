@@ -1,9 +1,11 @@
 //! `vol diff`: the CPU, the GPU and the f64 reference on one scene.
 
+use std::path::Path;
+
 use vol::backend::{Choice, Device};
 use vol::compare::{self, Difference, FieldReport, GPU_IMAGE, ImageClass, ImageReport, PRECISION};
 use vol::failure::Failure;
-use vol::output::{atomic, png, ramp};
+use vol::output::{Format, atomic, png, ramp};
 use vol_compiler::frame::{Frame, Image, Job, Sampling};
 use vol_compiler::program::Program;
 
@@ -32,9 +34,7 @@ const MAX_SAMPLES: u32 = 25;
 const MAX_ERROR: f32 = 1e-2;
 
 pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
-    if let Some(path) = &arguments.difference {
-        atomic::probe(path)?;
-    }
+    arguments.difference.as_deref().map(probe).transpose()?;
     super::catch_interrupts()?;
     let prepared = Prepared::new(&arguments.scene)?;
     let arithmetic = super::arithmetic(arguments.strict);
@@ -49,13 +49,10 @@ pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
     let fields = compare_fields(program, &frame, &points, &pair)?;
     if !fields.is_empty() {
         let rows = fields.iter().zip(&program.fields).map(|(row, field)| row.row(&field.name, &pair));
-        print_table(
-            &[FIELD_HEADINGS.map(str::to_owned).to_vec()].into_iter().chain(rows).collect::<Vec<_>>(),
-        )?;
+        show(&FIELD_HEADINGS, rows)?;
     }
     let pictures = compare_pictures(&prepared, size, &pair)?;
-    let rows = pictures.rows.iter().map(|row| row.row(&pair));
-    print_table(&[PICTURE_HEADINGS.map(str::to_owned).to_vec()].into_iter().chain(rows).collect::<Vec<_>>())?;
+    show(&PICTURE_HEADINGS, pictures.rows.iter().map(|row| row.row(&pair)))?;
     if let Some(path) = &arguments.difference {
         let codes = pictures.difference();
         atomic::write(path, |out| png::write_codes(&codes, size, out))?;
@@ -74,6 +71,19 @@ pub(super) fn run(arguments: &cli::Diff) -> Result<(), Failure> {
     explain(&prepared, &frame, &places, &pair)?;
     let all = fields.len() + pictures.rows.len();
     Err(Failure::content(format!("{failed} of {all} comparisons failed")))
+}
+
+/// Finds out whether the difference can be written before the work is done.
+fn probe(path: &Path) -> Result<(), Failure> {
+    if Format::of(path)? != Format::Png {
+        return Err(Failure::usage(format!("the difference is a PNG, not `{}`", path.display())));
+    }
+    atomic::probe(path)
+}
+
+fn show(headings: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Result<(), Failure> {
+    let headings = headings.iter().map(|&heading| heading.to_owned()).collect();
+    print_table(&[headings].into_iter().chain(rows).collect::<Vec<_>>())
 }
 
 /// What is compared, and how strictly.
@@ -110,6 +120,7 @@ fn explain(
         }
         return Ok(());
     }
+    super::print_line("no field differs by more than allowed where the comparisons are worst");
     Ok(())
 }
 

@@ -10,6 +10,7 @@ use vol::session::Moment;
 use vol_compiler::dropped;
 use vol_compiler::frame::{Counts, Frame, Inputs, Sampling};
 use vol_compiler::skip::Skip;
+use vol_compiler::wgsl::render::WORKGROUP;
 use vol_runtime_cpu::{FilledGrids, Method};
 
 use super::memory::{self, Memory};
@@ -142,7 +143,9 @@ fn render(
     let Prepared { session, params, moment } = prepared;
     let frames = arguments.frames.map_or(1, |f| u64::from(f.last - f.first) + 1);
     let pixels = stats.size.map(u64::from).iter().product();
-    let renderer = timed(&mut stats.milliseconds.prepare, || device.prepare(&session.program))?;
+    let workgroup = arguments.workgroup.map_or(WORKGROUP, |Size(shape)| shape);
+    let renderer =
+        timed(&mut stats.milliseconds.prepare, || device.prepare_with(&session.program, workgroup))?;
     let progress = Progress::new(pixels * frames);
     let filled = FilledGrids::default();
     let mut pictures =

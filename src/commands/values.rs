@@ -108,6 +108,14 @@ pub(crate) fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
+/// `16x16`, at most 256 invocations: what any WebGPU device allows.
+pub(crate) fn workgroup(text: &str) -> Result<Size, String> {
+    match size(text)? {
+        Size([width, height]) if u64::from(width) * u64::from(height) <= 256 => Ok(Size([width, height])),
+        Size(_) => Err("must have at most 256 invocations".to_owned()),
+    }
+}
+
 /// What names may start with in every shader language: a lower-case letter, then letters and digits.
 pub(crate) fn prefix(text: &str) -> Result<String, String> {
     let fits = text.starts_with(|c: char| c.is_ascii_lowercase())

@@ -104,7 +104,7 @@ fn spirv(program: &Program) -> Result<(), Failed> {
     let bytes = exported(program, Language::Spirv, Form::Module)?;
     accepted(&bytes, ".spv", "spirv-val", &["--target-env", "vulkan1.1", "FILE"])?;
     // What strict arithmetic hands to the driver.
-    let shader = vol_compiler::wgsl::render::render_module(program, JOB.quadrature)?;
+    let shader = vol_compiler::wgsl::render::render_module(program, JOB.quadrature, [16, 4])?;
     let strict = vol_compiler::wgsl::Arithmetic::Strict;
     let strict = vol_compiler::wgsl::spirv(&shader.text, "render", strict)?;
     let bytes: Vec<u8> = strict.words.into_iter().flat_map(u32::to_le_bytes).collect();

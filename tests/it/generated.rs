@@ -14,6 +14,11 @@ const SCENES: u64 = 1000;
 #[cfg(feature = "gpu")]
 const GPU_SCENES: u64 = 40;
 
+/// As many as `VOL_SCENES` says, for long runs, else the usual number.
+pub(crate) fn scenes(usual: u64) -> u64 {
+    std::env::var("VOL_SCENES").ok().and_then(|number| number.parse().ok()).unwrap_or(usual)
+}
+
 /// Points of each field.
 const POINTS: usize = 24;
 
@@ -21,14 +26,14 @@ const POINTS: usize = 24;
 pub(crate) fn trials() -> Vec<Trial> {
     vec![
         Trial::test("generated::fields__cpu", || {
-            check_all(SCENES, &|program, frame, id, points| {
+            check_all(scenes(SCENES), &|program, frame, id, points| {
                 let values = Device::Cpu.evaluate(program, frame, id, points);
                 values.map_err(|failure| format!("{failure:?}").into())
             })
         }),
         #[cfg(feature = "gpu")]
         crate::gpu_device::gpu_trial("generated::fields", |gpu| {
-            check_all(GPU_SCENES, &|program, frame, id, points| {
+            check_all(scenes(GPU_SCENES), &|program, frame, id, points| {
                 Ok(vol_runtime_gpu::evaluate(gpu, program, frame, id, points.as_flattened())?)
             })
         }),

@@ -2,7 +2,7 @@
 //! for random scenes. Nothing here has a tolerance.
 
 use crate::differential::{function_of, on_cpu, on_gpu, operands};
-use crate::generated::compiled;
+use crate::generated::{compiled, scenes};
 use crate::gpu_device::strict_trial;
 use crate::support::{FIRST, Random, compile_file, ensure, examples, frame, point, program_of, render};
 use libtest_mimic::{Failed, Trial};
@@ -181,7 +181,8 @@ fn numbers(image: &Image) -> Vec<f32> {
 
 fn random_scenes(gpu: &Gpu, part: u64) -> Result<(), Failed> {
     let mut refused = 0;
-    for seed in (part..SCENES).step_by(PARTS as usize) {
+    let scenes = scenes(SCENES);
+    for seed in (part..scenes).step_by(PARTS as usize) {
         let bytes = vol_generator::bytes(seed, [60, 150, 300, 600][(seed / PARTS) as usize % 4]);
         if let Err(failed) = same_scene(gpu, &bytes, seed) {
             let smallest = vol_generator::shrink(&bytes, |bytes| same_scene(gpu, bytes, seed).is_err());
@@ -190,7 +191,7 @@ fn random_scenes(gpu: &Gpu, part: u64) -> Result<(), Failed> {
         }
         refused += u64::from(compiled(&bytes)?.is_none());
     }
-    ensure(refused * 4 < SCENES / PARTS, || format!("{refused} scenes have no first frame"))
+    ensure(refused * 4 < scenes.div_ceil(PARTS), || format!("{refused} scenes have no first frame"))
 }
 
 /// All fields of a scene and, of some scenes, a picture.

@@ -34,13 +34,7 @@ pub fn entries(program: &Program, frame: &Frame) -> Vec<Entry> {
         if outputs > 4 {
             continue;
         }
-        let word = names::function_word(&field.name);
-        let mut name = word.clone();
-        let mut copy = 2;
-        while !taken.insert(name.clone()) {
-            name = format!("{word}_{copy}");
-            copy += 1;
-        }
+        let name = free_name(&field.name, &mut taken);
         let callee = names::function(field.function.index(), &function.name);
         all.push(Entry {
             name,
@@ -51,6 +45,18 @@ pub fn entries(program: &Program, frame: &Frame) -> Vec<Entry> {
         });
     }
     all
+}
+
+/// What a field is called: `density:cloud` is `density_cloud`, a function `wave` of the scene `field_wave`, since the bare name
+/// may be one of ours. A name that ends in a digit gets an underscore: naga gives it one in some languages.
+fn free_name(field: &str, taken: &mut HashSet<String>) -> String {
+    let word = names::function_word(field);
+    let word = if field.contains(':') { word } else { format!("field_{word}") };
+    let spelled = |word: String| if word.ends_with(|c: char| c.is_ascii_digit()) { word + "_" } else { word };
+    let copies = (2..).map(|copy| spelled(format!("{word}_{copy}")));
+    let mut names = std::iter::once(spelled(word.clone())).chain(copies);
+    // There are more numbers than fields.
+    names.find(|name| taken.insert(name.clone())).unwrap_or(word)
 }
 
 fn whole_scene(program: &Program, frame: &Frame) -> Vec<Entry> {

@@ -10,7 +10,11 @@ const JOB: Job = Job {
 };
 
 fn exported(language: Language, form: Form) -> Result<String, ExportError> {
-    let file = vol_language::source::SourceFile::new("ball.vol", "object ball { shape: sphere(1) }");
+    exported_scene("object ball { shape: sphere(1) }", language, form)
+}
+
+fn exported_scene(text: &str, language: Language, form: Form) -> Result<String, ExportError> {
+    let file = vol_language::source::SourceFile::new("ball.vol", text);
     let (scene, _) = vol_language::analyse(&file, &crate::library::library());
     let program = crate::lower::compile(&scene.expect("a scene")).0.expect("a program");
     let frame = program.frame(&program.default_params(), 0.0, 0.0, JOB.size).expect("a frame");
@@ -54,5 +58,26 @@ fn the_version_stays_first() {
 fn some_forms_do_not_exist() {
     for (language, form) in [(Language::Spirv, Form::Library), (Language::Shadertoy, Form::Module)] {
         assert!(matches!(exported(language, form), Err(ExportError::NoSuchForm(_))));
+    }
+}
+
+/// Names of scenes that are also ours, that end in digits, and that are the same without their signs.
+#[test]
+fn names_do_not_clash() {
+    let scene = "fn fade(p: vec3) -> float { p.x }\nfn hold(p: vec3) -> float { p.y + fade(p) }\nobject ball2 { shape: sphere(1) }\n\
+        object radiance { shape: box((1, 1, 1)) }\nmedium _fog_ { region: sphere(2), density: 1 }\n\
+        medium fog { region: sphere(2), density: 1 }";
+    for language in [Language::Wgsl, Language::Glsl, Language::Hlsl, Language::Msl, Language::Shadertoy] {
+        let text = exported_scene(scene, language, Form::Library).expect("it can be said");
+        for name in [
+            "field_fade",
+            "field_hold",
+            "distance_ball2_",
+            "distance_radiance",
+            "density_fog",
+            "density_fog_2_",
+        ] {
+            assert!(text.contains(&format!("sky_{name}(")), "{language:?} has no {name}");
+        }
     }
 }

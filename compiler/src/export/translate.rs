@@ -1,9 +1,9 @@
 //! WGSL texts of this crate in other languages, by naga.
 
-use crate::wgsl::WgslError;
-use naga::back::{glsl, hlsl, msl, spv};
+use crate::wgsl::{WgslError, read, spirv};
+use naga::back::{glsl, hlsl, msl};
 use naga::proc::BoundsCheckPolicies;
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::ModuleInfo;
 use naga::{Module, ShaderStage};
 
 /// Macros that choose a stage of a GLSL module, and its entry point.
@@ -13,29 +13,13 @@ const STAGES: [(&str, ShaderStage, &str); 3] = [
     ("VOL_FRAGMENT", ShaderStage::Fragment, "paint"),
 ];
 
-fn read(wgsl: &str) -> Result<(Module, ModuleInfo), WgslError> {
-    let module = naga::front::wgsl::parse_str(wgsl)
-        .map_err(|error| WgslError::Parse { message: error.emit_to_string(wgsl) })?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| WgslError::Validate { message: error.emit_to_string(wgsl) })?;
-    Ok((module, info))
-}
-
 fn failed(language: &'static str, error: &dyn std::error::Error) -> WgslError {
     WgslError::Translate { language, message: error.to_string() }
 }
 
 /// All entry points as little-endian SPIR-V 1.3.
 pub(super) fn spirv_module(wgsl: &str) -> Result<Vec<u8>, WgslError> {
-    let (module, info) = read(wgsl)?;
-    let options = spv::Options {
-        lang_version: (1, 3),
-        flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
-        ..spv::Options::default()
-    };
-    let words = spv::write_vec(&module, &info, &options, None).map_err(|error| failed("SPIR-V", &error))?;
-    Ok(words.into_iter().flat_map(u32::to_le_bytes).collect())
+    Ok(spirv::whole(wgsl)?.into_iter().flat_map(u32::to_le_bytes).collect())
 }
 
 /// All entry points as HLSL; without any, all functions.

@@ -64,6 +64,9 @@ const INTEGRATOR: [&str; 16] = [
     include_str!("render/medium.wgsl"),
 ];
 
+/// Invocations of a workgroup along x and y, where none is asked for.
+pub const WORKGROUP: [u32; 2] = [8, 8];
+
 /// Entry point of a compute shader.
 const PIXEL: &str = include_str!("render/pixel.wgsl");
 
@@ -136,11 +139,17 @@ const BINDINGS: &str = "\
 
 /// The complete shader of a program, for jobs with one quadrature; without media there is no difference.
 ///
+/// * `workgroup`: invocations along x and y, at most 256 together; no picture depends on it
+///
 /// # Errors
 ///
 /// If naga does not accept the text, which is a fault of this crate.
-pub fn render_module(program: &Program, quadrature: Quadrature) -> Result<Shader, WgslError> {
-    let text = module_text(program, quadrature, None, &[PIXEL]);
+pub fn render_module(
+    program: &Program,
+    quadrature: Quadrature,
+    workgroup: [u32; 2],
+) -> Result<Shader, WgslError> {
+    let text = module_text(program, quadrature, None, &[&pixel(workgroup)]);
     super::validate(&text)?;
     Ok(Shader { text, inputs: spaces(program) })
 }
@@ -162,9 +171,13 @@ pub fn shared_module(
     quadrature: Quadrature,
     notes: &Notes<'_>,
 ) -> Result<Shader, WgslError> {
-    let text = module_text(program, quadrature, Some(notes), &[PIXEL, PAINT]);
+    let text = module_text(program, quadrature, Some(notes), &[&pixel(WORKGROUP), PAINT]);
     super::validate(&text)?;
     Ok(Shader { text, inputs: spaces(program) })
+}
+
+fn pixel([width, height]: [u32; 2]) -> String {
+    format!("const GROUP_WIDTH: u32 = {width}u;\nconst GROUP_HEIGHT: u32 = {height}u;\n{PIXEL}")
 }
 
 fn module_text(

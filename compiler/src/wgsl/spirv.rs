@@ -7,7 +7,6 @@
 
 use super::WgslError;
 use naga::back::spv;
-use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// How a device may compute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,21 +55,10 @@ const ARITHMETIC: [u32; 15] = [12, 127, 129, 131, 133, 136, 140, 141, 142, 143, 
 ///
 /// [`WgslError`] if naga does not accept the text or cannot say it in SPIR-V.
 pub fn spirv(wgsl: &str, entry: &str, arithmetic: Arithmetic) -> Result<Spirv, WgslError> {
-    let module = naga::front::wgsl::parse_str(wgsl)
-        .map_err(|error| WgslError::Parse { message: error.emit_to_string(wgsl) })?;
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-        .validate(&module)
-        .map_err(|error| WgslError::Validate { message: error.emit_to_string(wgsl) })?;
-    let untranslatable = |message: String| WgslError::Translate { language: "SPIR-V", message };
+    let (module, info) = super::read(wgsl)?;
     let point = module.entry_points.iter().find(|point| point.name == entry);
     let point = point.ok_or_else(|| untranslatable(format!("there is no entry point `{entry}`")))?;
-    let options = spv::Options {
-        lang_version: (1, 3),
-        // Names make modules readable; debug builds of naga alone would add them.
-        flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
-        force_loop_bounding: false,
-        ..spv::Options::default()
-    };
+    let options = spv::Options { force_loop_bounding: false, ..options() };
     let pipeline = spv::PipelineOptions { shader_stage: point.stage, entry_point: entry.to_owned() };
     let words = spv::write_vec(&module, &info, &options, Some(&pipeline))
         .map_err(|error| untranslatable(error.to_string()))?;
@@ -79,6 +67,25 @@ pub fn spirv(wgsl: &str, entry: &str, arithmetic: Arithmetic) -> Result<Spirv, W
         Arithmetic::Strict => strict(&words),
     };
     Ok(Spirv { words, workgroup_size: point.workgroup_size })
+}
+
+/// The words of all entry points of a WGSL text, with checks of indices and of loops.
+pub(crate) fn whole(wgsl: &str) -> Result<Vec<u32>, WgslError> {
+    let (module, info) = super::read(wgsl)?;
+    spv::write_vec(&module, &info, &options(), None).map_err(|error| untranslatable(error.to_string()))
+}
+
+/// Names make modules readable; by itself naga writes them in debug builds alone.
+fn options() -> spv::Options<'static> {
+    spv::Options {
+        lang_version: (1, 3),
+        flags: spv::WriterFlags::DEBUG | spv::WriterFlags::LABEL_VARYINGS,
+        ..spv::Options::default()
+    }
+}
+
+fn untranslatable(message: String) -> WgslError {
+    WgslError::Translate { language: "SPIR-V", message }
 }
 
 /// The module with `NoContraction` on every result of floating-point arithmetic, and signs of zeros, infinities and what is

@@ -198,6 +198,7 @@ fn compile_languages(sandbox: &Sandbox) -> Result<(), Failed> {
     equal(sandbox.read("a.spv")?[..4].to_vec(), vec![3, 2, 0x23, 7])?;
     sandbox.vol("compile ball.vol --target spirv --as library")?.expect(2, &["SPIR-V", "--as"])?;
     sandbox.vol("compile ball.vol --target shadertoy --as module")?.expect(2, &["Shadertoy", "--as"])?;
+    sandbox.vol("compile ball.vol --target wgsl -o a.x --reflect a.x")?.expect(2, &["one file"])?;
     sandbox.vol("compile ball.vol --target wgsl --prefix 9")?.expect(2, &["--prefix"])?;
     sandbox.vol("compile ball.vol --target wgsl --step 0.1 --max-error 0.1")?.expect(2, &["--step"])?;
     sandbox
@@ -328,6 +329,7 @@ fn diff(sandbox: &Sandbox) -> Result<(), Failed> {
     let outcome =
         sandbox.vol("diff ball.vol --points 10 --size 8x4 --time 1s -D size=0.5")?.expect(0, &[])?;
     equal(outcome.stdout.contains("8x4"), true)?;
+    sandbox.vol("diff fog.vol --difference d.exr")?.expect(2, &["PNG"])?;
     // Bits are counted, and with strict arithmetic on software demanded.
     let outcome =
         sandbox.vol("diff fog.vol --points 100 --strict --difference d.png")?.expect(0, &["strict"])?;
@@ -342,6 +344,14 @@ fn gpu_by_name(sandbox: &Sandbox) -> Result<(), Failed> {
         .expect(0, &["a.png: 32x18", "on GPU, "])?;
     let stats: serde_json::Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
     equal(stats["backend"].as_str(), Some("gpu"))?;
+    // The shape of workgroups changes no picture.
+    let picture = |shape: &str| -> Result<Vec<u8>, Failed> {
+        let run = format!("render fog.vol -o b.exr --backend gpu --strict --workgroup {shape}");
+        sandbox.vol(&run)?.expect(0, &[])?;
+        sandbox.read("b.exr").map_err(Failed::from)
+    };
+    equal(picture("8x8")? == picture("128x1")?, true)?;
+    sandbox.vol("render fog.vol -o b.exr --workgroup 32x16")?.expect(2, &["256"])?;
     let outcome = sandbox.vol_reading("query ball.vol distance:ball --backend gpu", "0,0,0\n0,3,0\n")?;
     equal(outcome.expect(0, &[])?.stdout, "-1\n2\n".to_owned())
 }

@@ -3,7 +3,7 @@
 
 @group(0) @binding(5) var<storage, read_write> vol_output: array<u32>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(GROUP_WIDTH, GROUP_HEIGHT)
 fn render(@builtin(global_invocation_id) id: vec3u) {
     let tile = vec4u(
         u32(vol_frame_word(AT_TILE)),

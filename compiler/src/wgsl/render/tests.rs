@@ -129,7 +129,7 @@ fn frame(program: &Program) -> Frame {
 fn modules_are_accepted() {
     for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
         for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
-            let text = render_module(&program(objects, media), quadrature);
+            let text = render_module(&program(objects, media), quadrature, WORKGROUP);
             assert!(
                 text.is_ok_and(|shader| shader.text.contains("fn render(")),
                 "{objects} objects, {media} media"

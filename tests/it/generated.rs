@@ -7,12 +7,8 @@ use libtest_mimic::{Failed, Trial};
 use vol::backend::Device;
 use vol_compiler::program::Program;
 
-/// Scenes on the CPU.
+/// Scenes on each backend.
 const SCENES: u64 = 1000;
-
-/// Scenes on the GPU, whose drivers take long to compile them.
-#[cfg(feature = "gpu")]
-const GPU_SCENES: u64 = 40;
 
 /// As many as `VOL_SCENES` says, for long runs, else the usual number.
 pub(crate) fn scenes(usual: u64) -> u64 {
@@ -33,7 +29,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         }),
         #[cfg(feature = "gpu")]
         crate::gpu_device::gpu_trial("generated::fields", |gpu| {
-            check_all(scenes(GPU_SCENES), &|program, frame, id, points| {
+            check_all(scenes(SCENES), &|program, frame, id, points| {
                 Ok(vol_runtime_gpu::evaluate(gpu, program, frame, id, points.as_flattened())?)
             })
         }),

@@ -27,7 +27,7 @@ const SCENES: u64 = 1000;
 const PARTS: u64 = 8;
 
 /// Of every so many scenes one is also drawn: software Vulkan compiles the shader of a picture for a second or two.
-const DRAWN: u64 = 10;
+const DRAWN: u64 = 4;
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {

@@ -3042,12 +3042,14 @@ fn gather(before: Glow, node: i32, chunk: Chunk) -> Glow {
     return glow;
 }
 
+const GROUP_WIDTH: u32 = 8u;
+const GROUP_HEIGHT: u32 = 8u;
 // The pixels of a picture by a compute shader: one invocation takes samples of one pixel, and the next dispatch goes on
 // where it stopped.
 
 @group(0) @binding(5) var<storage, read_write> vol_output: array<u32>;
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(GROUP_WIDTH, GROUP_HEIGHT)
 fn render(@builtin(global_invocation_id) id: vec3u) {
     let tile = vec4u(
         u32(vol_frame_word(AT_TILE)),

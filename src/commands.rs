@@ -157,12 +157,9 @@ fn open(choice: Choice, arithmetic: Arithmetic) -> Result<Device, Failure> {
 }
 
 /// The line of a place, `tornado.vol:9: density: q => …`; what is handed on says nothing of where its scene lay.
-fn line_of(sources: &Sources, span: Span) -> Option<String> {
-    let (file, span) = sources.locate(span);
-    let start = file.text.floor_char_boundary(span.start as usize);
-    let number = file.text[..start].matches('\n').count() + 1;
-    let text = file.text.lines().nth(number - 1)?.trim();
-    Some(format!("{}:{number}: {text}", base(&file.name)))
+fn line_of(sources: &Sources, span: Span) -> String {
+    let (file, number, text) = sources.line(span);
+    format!("{}:{number}: {text}", base(&file.name))
 }
 
 /// A file's name without its folders.

@@ -118,12 +118,9 @@ impl Lines<'_> {
     }
 
     fn label_of(&mut self, span: Span) -> u32 {
-        let (file, span) = self.sources.locate(span);
-        let start = file.text.floor_char_boundary(span.start as usize);
-        let number = file.text[..start].matches('\n').count() + 1;
+        let (file, number, text) = self.sources.line(span);
         *self.known.entry((&file.name, number)).or_insert_with(|| {
-            let text = file.text.lines().nth(number - 1).unwrap_or_default().trim().to_owned();
-            self.lines.push(Line { file: file.name.clone(), number, text });
+            self.lines.push(Line { file: file.name.clone(), number, text: text.to_owned() });
             self.lines.len() as u32
         })
     }

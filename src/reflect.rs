@@ -61,10 +61,12 @@ const CONVENTIONS: Conventions = Conventions {
     words: "contents are 32-bit words; a buffer of f32 holds their bits",
 };
 
-#[derive(Serialize)]
-struct ParamEntry<'a> {
+/// A param for programs.
+#[derive(Debug, Serialize)]
+pub struct ParamEntry<'a> {
     name: &'a str,
     r#type: String,
+    /// One number per component; radians for angles, linear light for colours.
     default: &'a [f64],
     range: Option<(f64, f64)>,
     label: &'a str,
@@ -137,7 +139,7 @@ pub fn json(source: &Source<'_>, language: Language, form: Form, time: f64, para
             steps: [job.step, job.shadow_step],
         },
         conventions: CONVENTIONS,
-        params: program.params.iter().map(param_entry).collect(),
+        params: self::params(&program.params),
         bindings: if is_module { bindings(source) } else { Vec::new() },
         frame_words: if is_module { frame_words(program) } else { Vec::new() },
         entry_points: if is_module { entry_points() } else { Vec::new() },
@@ -151,7 +153,13 @@ pub fn json(source: &Source<'_>, language: Language, form: Form, time: f64, para
     serde_json::to_string_pretty(&reflection).expect("strings and numbers always become JSON") + "\n"
 }
 
-fn param_entry(param: &Param) -> ParamEntry<'_> {
+/// What a program must know of params.
+#[must_use]
+pub fn params(params: &[Param]) -> Vec<ParamEntry<'_>> {
+    params.iter().map(entry).collect()
+}
+
+fn entry(param: &Param) -> ParamEntry<'_> {
     let Param { name, ty, default, range, label, .. } = param;
     ParamEntry { name, r#type: ty.to_string(), default, range: *range, label }
 }

@@ -38,7 +38,7 @@ use vol_language::source::Span;
 
 use layout::SceneRows;
 pub use layout::{Space, scene_words};
-pub use spirv::{Arithmetic, Spirv, spirv};
+pub use spirv::{Arithmetic, Spirv, strict_spirv};
 
 /// Threads in a workgroup of [`evaluation_module`].
 pub const EVALUATION_GROUP: u32 = 64;

@@ -102,6 +102,15 @@ impl Sources {
         let index = self.starts.partition_point(|&start| start <= span.start).max(1) - 1;
         (&self.files[index], span.back(self.starts[index]))
     }
+
+    /// The line that a span begins in: its file, its number from 1, its text without the blanks around it.
+    #[must_use]
+    pub fn line(&self, span: Span) -> (&SourceFile, usize, &str) {
+        let (file, span) = self.locate(span);
+        let start = file.text.floor_char_boundary(span.start as usize);
+        let before = file.text[..start].matches('\n').count();
+        (file, before + 1, file.text.lines().nth(before).unwrap_or_default().trim())
+    }
 }
 
 /// Why bytes are not a scene text.

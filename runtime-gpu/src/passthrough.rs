@@ -3,7 +3,7 @@
 //! wgpu checks nothing of such a module. What is handed over is a text of `vol_compiler::wgsl` that naga has validated,
 //! written by naga and changed by decorations of results alone.
 
-use vol_compiler::wgsl::{self, Arithmetic, WgslError};
+use vol_compiler::wgsl::{self, WgslError};
 
 /// Tells wgpu that an experimental feature is wanted.
 #[allow(unsafe_code, reason = "wgpu wants to hear that its experimental features may have faults")]
@@ -24,7 +24,7 @@ pub(crate) fn module(
     wgsl: &str,
     entry: &str,
 ) -> Result<wgpu::ShaderModule, WgslError> {
-    let spirv = wgsl::spirv(wgsl, entry, Arithmetic::Strict)?;
+    let spirv = wgsl::strict_spirv(wgsl, entry)?;
     let [x, y, z] = spirv.workgroup_size;
     let entry_points = [wgpu::PassthroughShaderEntryPoint { name: entry.into(), workgroup_size: (x, y, z) }];
     let descriptor = wgpu::ShaderModuleDescriptorPassthrough {

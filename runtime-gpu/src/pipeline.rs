@@ -24,7 +24,6 @@ pub struct Kernel {
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) layout: wgpu::BindGroupLayout,
     label: String,
-    inputs: usize,
     compile_time: Duration,
 }
 
@@ -32,11 +31,6 @@ impl Kernel {
     /// The name given when the kernel was made; it appears in error messages.
     pub fn label(&self) -> &str {
         &self.label
-    }
-
-    /// How many input buffers each dispatch takes.
-    pub fn inputs(&self) -> usize {
-        self.inputs
     }
 
     /// How long parsing, validating and creating the pipeline took.
@@ -71,13 +65,7 @@ impl Gpu {
         let module = module.map_err(|error| GpuError::untranslatable(label, &error))?;
         let (layout, pipeline) =
             self.guarded(refused, || self.create_pipeline(label, &module, entry, inputs))?;
-        Ok(Kernel {
-            pipeline,
-            layout,
-            label: label.to_owned(),
-            inputs: inputs.len(),
-            compile_time: start.elapsed(),
-        })
+        Ok(Kernel { pipeline, layout, label: label.to_owned(), compile_time: start.elapsed() })
     }
 
     fn create_module(&self, label: &str, wgsl: &str, entry: &str) -> Result<wgpu::ShaderModule, WgslError> {

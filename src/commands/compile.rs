@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     let prepared = Prepared::new(&arguments.scene)?;
     let (frame, job) = moment(&prepared, arguments)?;
     let session = &prepared.session;
-    let line = |span: Span| super::line_of(&session.sources, span);
+    let line = |span: Span| Some(super::line_of(&session.sources, span));
     let source = Source {
         program: &session.program,
         frame: &frame,

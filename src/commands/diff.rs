@@ -115,7 +115,7 @@ fn explain(
              {allowed:.1e} apart is allowed",
             field.name
         ));
-        if let Some(line) = place.and_then(|span| super::line_of(&prepared.session.sources, span)) {
+        if let Some(line) = place.map(|span| super::line_of(&prepared.session.sources, span)) {
             super::print_line(&format!("  {line}"));
         }
         return Ok(());

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write as _};
 
-use serde::Serialize;
 use vol::failure::Failure;
+use vol::reflect;
 use vol::session::written;
 use vol_compiler::program::Param;
 use vol_compiler::skip::Skips;
@@ -34,26 +34,7 @@ fn line(param: &Param) -> String {
     line + "\n"
 }
 
-#[derive(Serialize)]
-struct JsonParam<'a> {
-    name: &'a str,
-    r#type: String,
-    /// One number per component; radians for angles, linear light for colours.
-    default: &'a [f64],
-    range: Option<(f64, f64)>,
-    label: &'a str,
-}
-
 fn json(params: &[Param]) -> String {
-    let params: Vec<JsonParam<'_>> = params
-        .iter()
-        .map(|param| JsonParam {
-            name: &param.name,
-            r#type: param.ty.to_string(),
-            default: &param.default,
-            range: param.range,
-            label: &param.label,
-        })
-        .collect();
-    serde_json::to_string_pretty(&params).expect("strings and numbers always become JSON") + "\n"
+    let entries = reflect::params(params);
+    serde_json::to_string_pretty(&entries).expect("strings and numbers always become JSON") + "\n"
 }

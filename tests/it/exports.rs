@@ -105,8 +105,7 @@ fn spirv(program: &Program) -> Result<(), Failed> {
     accepted(&bytes, ".spv", "spirv-val", &["--target-env", "vulkan1.1", "FILE"])?;
     // What strict arithmetic hands to the driver.
     let shader = vol_compiler::wgsl::render::render_module(program, JOB.quadrature, [16, 4])?;
-    let strict = vol_compiler::wgsl::Arithmetic::Strict;
-    let strict = vol_compiler::wgsl::spirv(&shader.text, "render", strict)?;
+    let strict = vol_compiler::wgsl::strict_spirv(&shader.text, "render")?;
     let bytes: Vec<u8> = strict.words.into_iter().flat_map(u32::to_le_bytes).collect();
     accepted(&bytes, ".spv", "spirv-val", &["--target-env", "vulkan1.1", "FILE"])
 }

@@ -46,7 +46,7 @@ const PRESERVE_SIGNED_ZERO_INF_NAN: u32 = 4461;
 /// products of vectors and matrices, OpDot.
 const ARITHMETIC: [u32; 15] = [12, 127, 129, 131, 133, 136, 140, 141, 142, 143, 144, 145, 146, 147, 148];
 
-/// Translates the entry point `entry` of a WGSL text.
+/// Translates the entry point `entry` of a WGSL text, with strict arithmetic.
 ///
 /// Loops are not bounded and indices not checked beyond what the text does: it is for texts of this crate, whose loops
 /// have bounds and whose indices come from its own tables.
@@ -54,7 +54,7 @@ const ARITHMETIC: [u32; 15] = [12, 127, 129, 131, 133, 136, 140, 141, 142, 143, 
 /// # Errors
 ///
 /// [`WgslError`] if naga does not accept the text or cannot say it in SPIR-V.
-pub fn spirv(wgsl: &str, entry: &str, arithmetic: Arithmetic) -> Result<Spirv, WgslError> {
+pub fn strict_spirv(wgsl: &str, entry: &str) -> Result<Spirv, WgslError> {
     let (module, info) = super::read(wgsl)?;
     let point = module.entry_points.iter().find(|point| point.name == entry);
     let point = point.ok_or_else(|| untranslatable(format!("there is no entry point `{entry}`")))?;
@@ -62,11 +62,7 @@ pub fn spirv(wgsl: &str, entry: &str, arithmetic: Arithmetic) -> Result<Spirv, W
     let pipeline = spv::PipelineOptions { shader_stage: point.stage, entry_point: entry.to_owned() };
     let words = spv::write_vec(&module, &info, &options, Some(&pipeline))
         .map_err(|error| untranslatable(error.to_string()))?;
-    let words = match arithmetic {
-        Arithmetic::Free => words,
-        Arithmetic::Strict => strict(&words),
-    };
-    Ok(Spirv { words, workgroup_size: point.workgroup_size })
+    Ok(Spirv { words: strict(&words), workgroup_size: point.workgroup_size })
 }
 
 /// The words of all entry points of a WGSL text, with checks of indices and of loops.
@@ -170,19 +166,21 @@ mod tests {
 
     #[test]
     fn arithmetic_on_floats_is_decorated() {
-        let free = spirv(TEXT, "main", Arithmetic::Free).expect("it is WGSL");
-        let strict = spirv(TEXT, "main", Arithmetic::Strict).expect("it is WGSL");
-        assert_eq!(free.workgroup_size, [4, 2, 1]);
-        assert_eq!(decorated(&free.words), 0);
+        let free = whole(TEXT).expect("it is WGSL");
+        let strict = strict_spirv(TEXT, "main").expect("it is WGSL");
+        assert_eq!(strict.workgroup_size, [4, 2, 1]);
+        assert_eq!(decorated(&free), 0);
         // Multiply, square root, add, divide, subtract; not the sum of whole numbers.
         assert_eq!(decorated(&strict.words), 5);
-        // With them a capability, an extension of 22 letters and an execution mode.
-        assert_eq!(strict.words.len(), free.words.len() + 3 * 5 + 2 + 7 + 4);
+        // With them an execution mode.
+        let preserves =
+            |words: &[u32]| words.windows(2).any(|pair| pair == [PRESERVE_SIGNED_ZERO_INF_NAN, 32]);
+        assert_eq!((preserves(&strict.words), preserves(&free)), (true, false));
     }
 
     #[test]
     fn what_cannot_be_said_is_an_error() {
-        assert!(matches!(spirv("fn f( {", "main", Arithmetic::Free), Err(WgslError::Parse { .. })));
-        assert!(matches!(spirv(TEXT, "other", Arithmetic::Free), Err(WgslError::Translate { .. })));
+        assert!(matches!(strict_spirv("fn f( {", "main"), Err(WgslError::Parse { .. })));
+        assert!(matches!(strict_spirv(TEXT, "other"), Err(WgslError::Translate { .. })));
     }
 }

@@ -39,6 +39,7 @@ fn libraries_have_neither_bindings_nor_entry_points() {
             "uniform ",
             "register(",
             "[[buffer",
+            "layout(location",
             "void main(",
         ] {
             assert!(!text.contains(word), "{language:?} has `{word}`");

@@ -24,10 +24,10 @@ fuzz_target!(|bytes: &[u8]| {
     );
     let program = program.expect("a scene without errors is compiled");
     for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
-        wgsl::render::render_module(&program, quadrature).expect("the shader is accepted");
+        wgsl::render::render_module(&program, quadrature, [8, 8]).expect("the shader is accepted");
     }
     // A frame may be refused with a message: what params and time set is not known before.
     if let Ok(frame) = program.frame(&program.default_params(), 0.5, 1.0, [64, 36]) {
-        lints::warnings(&program, &frame);
+        let _ = lints::warnings(&program, &frame);
     }
 });

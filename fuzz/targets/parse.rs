@@ -10,6 +10,6 @@ fuzz_target!(|text: &str| {
     let file = SourceFile::new("fuzz.vol", text);
     let (_, diagnostics) = parse(&file);
     let sources = file.into();
-    render::human(&sources, &diagnostics, false);
-    render::json(&sources, &diagnostics);
+    let _ = render::human(&sources, &diagnostics, false);
+    let _ = render::json(&sources, &diagnostics);
 });

@@ -9,5 +9,5 @@ fuzz_target!(|text: &str| {
     let file = SourceFile::new("fuzz.vol", text);
     let (scene, diagnostics) = vol_language::analyse(&file, &vol_compiler::library::library());
     assert_eq!(scene.is_none(), diagnostics.iter().any(Diagnostic::is_error));
-    render::human(&file.into(), &diagnostics, false);
+    let _ = render::human(&file.into(), &diagnostics, false);
 });

@@ -132,6 +132,10 @@ pub(crate) struct Render {
     /// shows it instead, in false colours
     #[arg(long, value_enum, conflicts_with = "reference")]
     pub(crate) aov: Option<Aov>,
+    /// Write the light map that a style fits to its strokes to this `.exr` or `.png`; of several each with the name of
+    /// its style before the extension
+    #[arg(long, value_name = "FILE")]
+    pub(crate) light_map: Option<PathBuf>,
     /// Write what was done and how long it took to this JSON file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,

@@ -118,6 +118,13 @@ impl Prepared {
         self.session.frame(&self.params, self.moment, size)
     }
 
+    /// The same with its styles prepared, for a picture.
+    fn styled_frame(&self, size: [u32; 2]) -> Result<Frame, Failure> {
+        let mut frame = self.frame(size)?;
+        self.session.prepare_styles(&mut frame, size)?;
+        Ok(frame)
+    }
+
     /// Shows what is suspicious at this moment.
     fn show_suspicions(&self) -> Result<(), Failure> {
         let frame = self.frame(self.session.program.render.size)?;

@@ -9,7 +9,7 @@ use vol_compiler::{lints, lower};
 use vol_language::nearest::nearest;
 use vol_language::{check, module, parse};
 
-use crate::stress;
+use crate::{stress, styles};
 
 /// The texts of these codes, in this order.
 macro_rules! texts {
@@ -20,14 +20,14 @@ macro_rules! texts {
 
 /// The text of every code, sorted.
 #[rustfmt::skip]
-const TEXTS: [(&str, &str); 103] = texts![
+const TEXTS: [(&str, &str); 107] = texts![
     "E0100", "E0101", "E0102", "E0103", "E0104", "E0105", "E0106", "E0107", "E0108", "E0109", "E0110",
     "E0111", "E0112", "E0113", "E0115", "E0201", "E0202", "E0203", "E0204", "E0205", "E0206", "E0207",
     "E0208", "E0209", "E0210", "E0211", "E0212", "E0213", "E0214", "E0215", "E0216", "E0217", "E0218",
     "E0219", "E0220", "E0221", "E0222", "E0223", "E0224", "E0225", "E0226", "E0227", "E0228", "E0229",
     "E0230", "E0231", "E0232", "E0233", "E0234", "E0235", "E0236", "E0301", "E0302", "E0303", "E0304",
     "E0305", "E0306", "E0307", "E0308", "E0309", "E0310", "E0311", "E0312", "E0313", "E0314", "E0315",
-    "E0316", "E0317", "E0319", "E0401", "E0402", "E0403", "E0404", "E0405", "E0406", "E0407", "E0408", "E0501", "E0502", "E0503", "E0601",
+    "E0316", "E0317", "E0319", "E0401", "E0402", "E0403", "E0404", "E0405", "E0406", "E0407", "E0408", "E0501", "E0502", "E0503", "E0505", "E0506", "E0507", "E0508", "E0601",
     "E0602", "E0603", "E0604", "E0605", "E0606", "E0701", "E0702", "E0703", "E0704", "W0101", "W0102", "W0103", "W0104", "W0110", "W0201", "W0401",
     "W0402", "W0403", "W0701", "W0702", "W0703", "W0704",
 ];
@@ -46,8 +46,15 @@ pub struct Story {
 /// The codes of all stages with their meanings, sorted.
 #[must_use]
 pub fn codes() -> Vec<(&'static str, &'static str)> {
-    let stages =
-        [parse::explain::CODES, module::CODES, check::CODES, lower::CODES, lints::CODES, stress::CODES];
+    let stages = [
+        parse::explain::CODES,
+        module::CODES,
+        check::CODES,
+        lower::CODES,
+        lints::CODES,
+        stress::CODES,
+        styles::CODES,
+    ];
     let mut codes: Vec<_> = stages.into_iter().flatten().copied().collect();
     codes.sort_unstable();
     codes

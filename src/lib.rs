@@ -20,3 +20,4 @@ pub mod profile;
 pub mod reflect;
 pub mod session;
 pub mod stress;
+pub mod styles;

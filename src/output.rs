@@ -78,6 +78,13 @@ pub fn frame_path(pattern: &Path, frame: u32) -> PathBuf {
     pattern.with_file_name(format!("{before}{frame:0width$}{}", &name[last + 1..]))
 }
 
+/// The path with a suffix before its extension: `a.png` with `sun` is `a-sun.png`.
+#[must_use]
+pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
+    let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    path.with_file_name(format!("{}-{suffix}.{}", part(path.file_stem()), part(path.extension())))
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Format, frame_path, has_frame_number};

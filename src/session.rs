@@ -23,8 +23,10 @@ use vol_language::diag::Diagnostic;
 use vol_language::module::Loader;
 use vol_language::nearest::nearest;
 use vol_language::source::{MAX_SOURCE_BYTES, SourceError, SourceFile, Sources};
+use vol_runtime_cpu::style::Picture;
 
 use crate::failure::Failure;
+use crate::styles;
 
 /// A scene that is ready to render.
 #[derive(Debug)]
@@ -33,6 +35,8 @@ pub struct Session {
     pub sources: Sources,
     /// The compiled scene.
     pub program: Program,
+    /// The pictures that its styles name; none for a text without a file.
+    pub pictures: Vec<Picture>,
     /// What is suspicious but no error.
     pub warnings: Vec<Diagnostic>,
     /// How long parsing and checking took.
@@ -132,7 +136,9 @@ impl Loader for Folder {
 /// As [`read`], and a scene failure with all the mistakes found.
 pub fn load(path: &Path, skips: Skips) -> Result<Session, Failure> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    compile(read(path)?, &Folder(folder), skips)
+    let mut session = compile(read(path)?, &Folder(folder), skips)?;
+    session.pictures = styles::pictures(&session.sources, &session.program)?;
+    Ok(session)
 }
 
 /// Checks and compiles a scene text.
@@ -152,7 +158,10 @@ pub fn compile(file: SourceFile, loader: &dyn Loader, skips: Skips) -> Result<Se
     let compile_time = started.elapsed();
     diagnostics.extend(found);
     match program {
-        Some(program) => Ok(Session { sources, program, warnings: diagnostics, check_time, compile_time }),
+        Some(program) => {
+            let (pictures, warnings) = (Vec::new(), diagnostics);
+            Ok(Session { sources, program, pictures, warnings, check_time, compile_time })
+        }
         None => Err(Failure::Scene { sources: Box::new(sources), diagnostics }),
     }
 }

@@ -7,6 +7,7 @@ mod camera;
 mod extent;
 mod inputs;
 mod light_grid;
+pub mod styled;
 mod tube;
 
 pub use inputs::Inputs;
@@ -14,13 +15,15 @@ pub use light_grid::LightGrid;
 
 use crate::curve::{self, CurveTable, Quadratic};
 use crate::ir::FunctionId;
+use crate::program::style::Style;
 use crate::program::{LightKind, Lighting, Program, Slot, Slot3, TubeSizes};
 use crate::reference;
 use crate::skip::{Skip, Skips};
 use extent::{Solid, Space};
 use glam::DVec3;
 use std::sync::Arc;
-use vol_language::diag::Diagnostic;
+use styled::StyledLight;
+pub use vol_language::diag::Diagnostic;
 
 /// A box aligned with the axes; infinite for shapes without bounds, `lo > hi` if empty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +52,17 @@ impl Aabb {
 }
 
 impl Frame {
+    /// A camera at the origin, for what depends on none.
+    #[must_use]
+    pub fn default_camera() -> CameraFrame {
+        CameraFrame {
+            origin: [0.0; 3],
+            forward: [0.0, 0.0, -1.0],
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, 1.0, 0.0],
+        }
+    }
+
     /// The box around all media, if there are any.
     #[must_use]
     pub fn media_bounds(&self) -> Option<Aabb> {
@@ -79,6 +93,11 @@ pub struct Frame {
     /// What media leave of each light, tabulated; where there is none, and for lights beyond the end of the
     /// list, both backends march through the media instead. Empty until someone chooses.
     pub light_grids: Vec<Option<Arc<LightGrid>>>,
+    /// Styles that are on; indices of lights are those here.
+    pub styles: Vec<Style<f64>>,
+    /// What styles make of each light; lights without, and beyond the end of the list, shine as they are.
+    /// Empty until someone prepares the styles.
+    pub styled_lights: Vec<Option<Arc<StyledLight>>>,
     /// Radiance where nothing is hit.
     pub background: [f32; 3],
     /// Box around all bounded objects and media; what the default camera frames.
@@ -89,7 +108,7 @@ pub struct Frame {
 
 /// Eye and picture plane: the ray through `(u, v)` in [-1, 1], v up, is
 /// `forward + u * right + v * up`, normalised.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFrame {
     /// The eye.
     pub origin: [f32; 3],
@@ -371,6 +390,7 @@ impl Program {
             occlusion: light.occlusion.map_or(0.0, |slot| at(slot).max(0.0) as f32),
         });
         let lights = lights.collect();
+        let styles = self.frame_styles(&uniforms)?;
         let view = camera::View {
             from: self.camera.from.map(at3),
             at: self.camera.at.map(at3),
@@ -390,8 +410,31 @@ impl Program {
             media,
             lights,
             light_grids: Vec::new(),
+            styles,
+            styled_lights: Vec::new(),
             skips: self.skips,
         })
+    }
+}
+
+impl Program {
+    /// The styles that are on and whose lights are.
+    fn frame_styles(&self, uniforms: &[f64]) -> Result<Vec<Style<f64>>, Diagnostic> {
+        let at = |slot: Slot| uniforms[slot.0 as usize];
+        let on = |light: usize| at(self.lights[light].enabled) != 0.0;
+        let mut styles: Vec<Style<f64>> = Vec::new();
+        for style in self.styles.iter().filter(|style| on(style.light)) {
+            let light = (0..style.light).filter(|&light| on(light)).count();
+            let style = Style { light, ..style.map(&at) };
+            if style.enabled == 0.0 {
+                continue;
+            }
+            if let Some(other) = styles.iter().find(|other| other.light == light) {
+                return Err(styled::two_styles(&self.lights[style.light].name, other.span, style.span));
+            }
+            styles.push(style);
+        }
+        Ok(styles)
     }
 }
 

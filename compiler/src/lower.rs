@@ -57,7 +57,10 @@ pub const CODES: &[(&str, &str)] = &[
     ("E0502", "a repeated shape reaches further than the copies that are asked"),
     ("E0503", "a tube whose surface cannot be marched safely"),
     ("W0201", "a path with a gap or a corner"),
-    ("W0401", "a style does not change pictures yet"),
+    ("E0505", "a style of a light that is not distant"),
+    ("E0506", "two styles of one light are on"),
+    ("E0507", "a stroke outside of the picture"),
+    ("W0401", "a style without a medium that it could change"),
 ];
 
 /// What lowering an expression gives, or the message about why it cannot be.
@@ -258,6 +261,8 @@ impl<'a> Lowerer<'a> {
             objects: plan.objects,
             media: plan.media,
             lights: plan.lights,
+            styles: plan.styles,
+            images: plan.images,
             camera: plan.camera,
             render: plan.render,
             fields: plan.fields,

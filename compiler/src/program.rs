@@ -4,6 +4,8 @@
 //! that may depend on params and time are [`Slot`]s: indices into the outputs of the frame
 //! function. [`crate::frame::Frame`] is a program at one moment, with those numbers filled in.
 
+pub mod style;
+
 use crate::ir::origin::Origins;
 use crate::ir::{FunctionId, Module};
 use crate::skip::Skips;
@@ -41,6 +43,10 @@ pub struct Program {
     pub media: Vec<Medium>,
     /// Lights.
     pub lights: Vec<Light>,
+    /// Styles of lights.
+    pub styles: Vec<style::Style<Slot>>,
+    /// Pictures that styles name; whoever renders reads them.
+    pub images: Vec<style::ImageFile>,
     /// The camera.
     pub camera: Camera,
     /// Picture settings.

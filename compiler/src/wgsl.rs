@@ -100,7 +100,8 @@ pub struct Shader {
 /// entry point.
 fn functions(program: &Program, rows: &SceneRows<'_>, notes: Option<&Notes<'_>>) -> String {
     let all: Vec<usize> = (0..program.module.functions.len()).collect();
-    definitions(&program.module, rows, &all, "vol_exp2(", notes)
+    let used = if program.styles.is_empty() { "vol_exp2(" } else { "vol_exp2(vol_atan2(" };
+    definitions(&program.module, rows, &all, used, notes)
 }
 
 /// What a text says about where its lines come from.

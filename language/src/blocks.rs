@@ -166,21 +166,35 @@ fn medium() -> Vec<Key> {
 
 fn style() -> Vec<Key> {
     vec![
-        required("light", Type::Block(BlockKind::Light), "the light whose shafts are styled"),
-        key("shadow_map", Type::Int, "width and height of the shadow map in texels; default 1024"),
+        required("light", Type::Block(BlockKind::Light), "the distant light whose shafts are styled"),
+        key(
+            "shadow_map",
+            Type::Int,
+            "width and height of the shadow map in texels, 16 to 8192; default 1024",
+        ),
+        key("shafts", Type::Choice(ChoiceKind::Shafts), "how solids hide the light; default mapped"),
         key("fill_holes", Type::Choice(ChoiceKind::HoleFilling), "closes holes of the occluders"),
-        key("enhance_silhouettes", Type::Float, "length of the epipolar dilation in texels; default 0"),
+        key(
+            "enhance_silhouettes",
+            Type::Choice(ChoiceKind::Enhancement),
+            "length in texels by which occluders grow away from the eye",
+        ),
         key("make_holes", Type::Settings(SettingsKind::Holes), "holes cut into the occluders by noise"),
         key(
             "transfer",
             Type::list(Type::Choice(ChoiceKind::Layer)),
-            "layers over average visibility (x) and linear depth (y)",
+            "colour of the shafts by average visibility (x) and depth (y), instead of the visibility",
         ),
-        key("light_map", Type::Choice(ChoiceKind::LightMap), "strokes that light shafts are fitted to"),
+        key(
+            "depth_range",
+            Type::Vec2,
+            "depths that are 0 and 1 in `transfer`; default: those of the scene's bounds",
+        ),
+        key("light_map", Type::Choice(ChoiceKind::LightMap), "strokes that the light's colour is fitted to"),
         key(
             "heterogeneity",
             Type::Settings(SettingsKind::Heterogeneity),
-            "variation painted into the medium",
+            "variation of the light along rays",
         ),
         key("when", Type::Bool, "whether the style is on; default true"),
     ]

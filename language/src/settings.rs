@@ -22,6 +22,14 @@ pub enum ChoiceKind {
     Overlap,
     /// How holes of occluders are closed.
     HoleFilling,
+    /// How silhouettes of occluders are enhanced; a bare number is the length of `extrude`.
+    Enhancement,
+    /// How visibility along a ray is found.
+    Shafts,
+    /// The sum of octaves of which holes are made.
+    HoleNoise,
+    /// Where a stroke was painted.
+    View,
     /// A layer of a transfer function.
     Layer,
     /// How a layer is put over those before.
@@ -62,6 +70,10 @@ impl ChoiceKind {
             Self::Frame => "frame",
             Self::Overlap => "overlap",
             Self::HoleFilling => "hole filling",
+            Self::Enhancement => "enhancement",
+            Self::Shafts => "shafts",
+            Self::HoleNoise => "hole noise",
+            Self::View => "view",
             Self::Layer => "layer",
             Self::Blend => "blend",
             Self::Constraint => "constraint",
@@ -102,11 +114,25 @@ impl ChoiceKind {
                 bare("sum", "all parts: their densities add up"),
             ],
             Self::HoleFilling => hole_fillings(),
+            Self::Enhancement => vec![word(
+                "extrude",
+                vec![required("length", Type::Float, "texels"), only()],
+                "dilation along epipolar lines, away from the eye",
+            )],
+            Self::Shafts => vec![
+                bare("mapped", "looked up in slices of a shadow map"),
+                bare("exact", "marched, each edge of a shadow found by bisection; no operator can change it"),
+            ],
+            Self::HoleNoise => vec![
+                bare("octaves", "each octave of twice the frequency, as Eq. 5 of Kol et al. is meant"),
+                bare("printed", "all octaves of one frequency, as Eq. 5 is printed"),
+            ],
+            Self::View => views(),
             Self::Layer => layers(),
             Self::Blend => vec![
                 bare("add", "sum"),
                 bare("multiply", "product"),
-                word("alpha", vec![required("amount", Type::Float, "0 to 1")], "mixed by an amount"),
+                word("alpha", vec![key("amount", Type::Float, "0 to 1; default 1")], "mixed by an amount"),
             ],
             Self::Constraint => constraints(),
             Self::LightMap => vec![word(
@@ -142,7 +168,7 @@ fn only() -> Key {
 
 fn hole_fillings() -> Vec<Word> {
     vec![
-        word("disk", vec![required("radius", Type::Float, "texels"), only()], "closing by a disk"),
+        word("disk", vec![required("diameter", Type::Float, "texels"), only()], "closing by a disk"),
         word(
             "epipolar",
             vec![required("length", Type::Float, "texels"), only()],
@@ -176,20 +202,32 @@ fn layers() -> Vec<Word> {
 
 fn constraints() -> Vec<Word> {
     let color = || required("color", Type::Color, "the colour there");
+    let alpha = || key("alpha", Type::Float, "how much of the layer it covers, 0 to 1; default 1");
     vec![
         word(
             "place",
-            vec![required("place", Type::Vec2, "in the transfer function"), color()],
+            vec![required("place", Type::Vec2, "in the transfer function"), color(), alpha()],
             "fixed place",
         ),
-        word("point", vec![color(), required("at", Type::Vec3, "world position")], "tracked point"),
+        word("point", vec![color(), alpha(), required("at", Type::Vec3, "world position")], "tracked point"),
     ]
+}
+
+fn views() -> Vec<Word> {
+    let place = |name, doc| required(name, Type::Vec3, doc);
+    let view = vec![
+        place("from", "position of the eye"),
+        place("at", "point looked at"),
+        key("up", Type::Vec3, "direction that points up in the picture; default (0, 1, 0)"),
+        key("fov", Type::Angle, "vertical field of view; default 40deg"),
+    ];
+    vec![bare("camera", "the scene's camera"), word("view", view, "a camera of its own")]
 }
 
 fn stroke() -> Word {
     let pixel = |name| required(name, Type::Vec2, "pixel from the top left");
     let params = vec![
-        required("view", Type::Block(BlockKind::Camera), "where it was painted"),
+        required("view", Type::Choice(ChoiceKind::View), "where it was painted"),
         pixel("from"),
         pixel("to"),
         required("width", Type::Float, "pixels"),
@@ -203,15 +241,19 @@ fn brushes() -> Vec<Word> {
         vec![
             required("center", Type::Vec3, "world position"),
             required("radii", Type::Vec3, "half axes, scene units"),
-            key("hardness", Type::Float, "0 (soft) to 1; default 0.5"),
+            key("hardness", Type::Float, "share of the radius at full opacity, 0 (soft) to 1; default 0.5"),
             key("opacity", Type::Float, "0 to 1; default 1"),
         ]
     };
     let mut painted = ellipsoid();
-    painted.push(key("frequency", Type::Float, "of the noise in it, per scene unit; default 1"));
+    painted.extend([
+        key("frequency", Type::Float, "of the finest detail, relative: 2 adds an octave, 0.5 takes one away"),
+        key("amount", Type::Float, "of variation, 0 to 1"),
+        key("intensity", Type::Float, "factor of the light"),
+    ]);
     vec![
-        word("brush", painted, "adds variation in an ellipsoid"),
-        word("eraser", ellipsoid(), "takes variation away in an ellipsoid"),
+        word("brush", painted, "paints what it names in an ellipsoid; without, an amount of 1"),
+        word("eraser", ellipsoid(), "takes back what was painted in an ellipsoid"),
     ]
 }
 
@@ -239,22 +281,46 @@ impl SettingsKind {
     pub fn keys(self) -> Vec<Key> {
         match self {
             Self::Holes => vec![
-                key("frequency", Type::Float, "of the first octave, per texel; default 0.1"),
+                key(
+                    "frequency",
+                    Type::Float,
+                    "of the first octave, cells along 1/256 of the map; default 0.1",
+                ),
                 key("persistence", Type::Float, "amplitude from octave to octave; default 0.5"),
-                key("octaves", Type::Int, "number of octaves; default 4"),
-                key("probability", Type::Float, "share that is cut away, 0 to 1; default 0.5"),
+                key("octaves", Type::Int, "number of octaves, 1 to 16; default 4"),
+                key("probability", Type::Float, "share of the map that is cut away, 0 to 1; default 0.5"),
+                key(
+                    "threshold",
+                    Type::Float,
+                    "level of the noise that is cut away below, instead of a share",
+                ),
                 only(),
-                key("phase", Type::Float, "moves the pattern; default 0"),
+                key(
+                    "phase",
+                    Type::Float,
+                    "turns by which the pattern moves and changes; default: it stands still",
+                ),
+                key(
+                    "noise",
+                    Type::Choice(ChoiceKind::HoleNoise),
+                    "how octaves are added up; default octaves",
+                ),
             ],
             Self::Heterogeneity => vec![
                 key("noise", Type::Choice(ChoiceKind::Noise), "the noise; default perlin"),
-                key("amount", Type::Float, "0 to 1; default 1"),
-                key("steps", Type::Int, "samples along a ray; default 64"),
+                key(
+                    "amount",
+                    Type::Float,
+                    "of variation where nothing is painted, 0 to 1; default 1, with brushes 0",
+                ),
+                key("frequency", Type::Float, "of the noise's first octave, cells per scene unit; default 1"),
+                key("octaves", Type::Int, "of the noise, 1 to 12; default 4"),
+                key("steps", Type::Int, "samples along a ray, 1 to 4096; default 64"),
                 key("upsample", Type::Int, "pixels per sample in width and height: 1, 4 or 16; default 1"),
                 key(
                     "brushes",
                     Type::list(Type::Choice(ChoiceKind::Brush)),
-                    "where it is painted; default everywhere",
+                    "what is painted, one over the other; default nothing",
                 ),
             ],
         }

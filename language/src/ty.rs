@@ -87,7 +87,7 @@ impl Type {
 
     /// The types that can be written by name, in the order in which messages list them.
     #[must_use]
-    pub fn all_named() -> [Self; 20] {
+    pub fn all_named() -> [Self; 23] {
         [
             Self::Bool,
             Self::Int,
@@ -109,6 +109,9 @@ impl Type {
             Self::Block(BlockKind::Object),
             Self::Block(BlockKind::Medium),
             Self::Block(BlockKind::Style),
+            Self::Choice(ChoiceKind::Layer),
+            Self::Choice(ChoiceKind::Brush),
+            Self::Choice(ChoiceKind::Stroke),
         ]
     }
 

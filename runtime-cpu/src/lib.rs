@@ -18,6 +18,7 @@ mod isa;
 pub mod math;
 mod real;
 pub mod render;
+pub mod style;
 
 pub use isa::Isa;
 pub use render::{

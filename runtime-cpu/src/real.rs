@@ -41,6 +41,8 @@ pub(crate) trait Real:
     fn sqrt(self) -> Self;
     /// The largest whole number not above.
     fn floor(self) -> Self;
+    /// Angle of the point (x, y), `self` being y, in -pi..pi.
+    fn atan2(self, x: Self) -> Self;
     /// 2^x
     fn exp2(self) -> Self;
     /// Base-2 logarithm of a positive number.
@@ -98,6 +100,10 @@ impl Real for f32 {
 
     fn sqrt(self) -> Self {
         self.sqrt()
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        fun::atan2(self, x)
     }
 
     fn floor(self) -> Self {
@@ -180,6 +186,10 @@ impl Real for f64 {
 
     fn sqrt(self) -> Self {
         self.sqrt()
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
     }
 
     fn floor(self) -> Self {

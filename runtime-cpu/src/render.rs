@@ -36,6 +36,7 @@ mod fixed_step;
 mod grid_choice;
 mod light_grid;
 mod majorant;
+mod marched;
 mod matter;
 mod medium;
 mod memory;
@@ -54,6 +55,7 @@ mod shade;
 mod shadow;
 mod spread;
 mod stride;
+mod styled;
 mod surface;
 mod survey;
 #[cfg(test)]
@@ -70,12 +72,17 @@ pub use pilot::{StepChoice, choose_step, least_step};
 pub use profile::{Profile, profile};
 pub use spread::spread_pixels;
 
+pub(crate) use camera::{Ray, camera_ray};
+pub(crate) use fields::Batch;
+pub(crate) use scene::{Batches, Integrator, Scene};
+pub(crate) use shadow::ShadowRay;
+pub(crate) use styled::NO_DEPTH;
+
 use crate::interp::Tapes;
-use fields::{Batch, Reference};
+use fields::Reference;
 use film::{Radiance, Watch, expose};
 use rayon::prelude::*;
 use sampling::Mean;
-use scene::{Batches, Integrator, Scene};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use vol_compiler::frame::{Frame, Image, Job, Pixel};

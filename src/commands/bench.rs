@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &cli::Bench) -> Result<(), Failure> {
     let prepared = Prepared::new(&arguments.scene)?;
     let program = &prepared.session.program;
     let size = arguments.size.map_or_else(|| super::at_most(program.render.size, LONGEST_SIDE), |Size(s)| s);
-    let frame = prepared.frame(size)?;
+    let frame = prepared.styled_frame(size)?;
     fs::create_dir_all(&arguments.output)
         .map_err(|error| Failure::io("cannot make", &arguments.output, error))?;
     let devices = devices(arguments.backend)?;

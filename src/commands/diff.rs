@@ -245,7 +245,7 @@ fn compare_pictures(prepared: &Prepared, size: [u32; 2], pair: &Pair<'_>) -> Res
     let render = |device: &Device, frame: &Frame, job: &Job| {
         Ok::<_, Failure>(device.prepare(program)?.render(frame, job, &|_| {}, &CANCELLED)?.image)
     };
-    let mut frame = prepared.frame(size)?;
+    let mut frame = prepared.styled_frame(size)?;
     let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
     let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
     let job = vol_runtime_cpu::choose(program, &mut frame, size, sampling, MAX_ERROR).job;
@@ -253,7 +253,7 @@ fn compare_pictures(prepared: &Prepared, size: [u32; 2], pair: &Pair<'_>) -> Res
     let both = PictureRow::new("cpu-gpu", &on_cpu, &on_gpu, GPU_IMAGE);
     // Rounding shows with few samples as well as with many, and the reference is slow.
     let small = at_most(size, REFERENCE_SIDE);
-    let frame = prepared.frame(small)?;
+    let frame = prepared.styled_frame(small)?;
     let coarse = REFERENCE_COARSENESS;
     let (step, shadow_step) = (coarse * job.step, coarse * job.shadow_step);
     let job = Job { size: small, step, shadow_step, ..job };

@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &cli::Profile) -> Result<(), Failure> {
     prepared.show_suspicions()?;
     let Prepared { session, params, moment } = &prepared;
     let size = arguments.size.map_or(session.program.render.size, |Size(size)| size);
-    let mut frame = prepared.frame(size)?;
+    let mut frame = prepared.styled_frame(size)?;
     let sampling = session.sampling(params, *moment, arguments.samples, arguments.adaptive)?;
     let max_error = arguments.max_error.unwrap_or(method::MAX_ERROR);
     // Choose as a render does, which is not part of what is measured.

@@ -7,16 +7,18 @@ use vol::backend::{Choice, Device, Rendered, Renderer};
 use vol::failure::{Failure, Message};
 use vol::output::{self, Format, atomic};
 use vol::session::Moment;
+use vol::styles;
 use vol_compiler::dropped;
 use vol_compiler::frame::{Counts, Frame, Inputs, Sampling};
 use vol_compiler::skip::Skip;
 use vol_compiler::wgsl::render::WORKGROUP;
+use vol_runtime_cpu::style::FittedMap;
 use vol_runtime_cpu::{FilledGrids, Method};
 
 use super::memory::{self, Memory};
 use super::method;
 use super::progress::Progress;
-use super::stats::{Phases, Stats, timed};
+use super::stats::{LightMap, Phases, Stats, timed};
 use super::values::{FrameRange, Size};
 use super::{CANCELLED, Prepared};
 use crate::cli;
@@ -74,6 +76,10 @@ fn check_outputs(arguments: &cli::Render) -> Result<(), Failure> {
         output = output::frame_path(&output, first);
     }
     atomic::probe(&output)?;
+    if let Some(path) = &arguments.light_map {
+        Format::of(path)?;
+        atomic::probe(path)?;
+    }
     arguments.stats.as_deref().map_or(Ok(()), atomic::probe)
 }
 
@@ -117,6 +123,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         estimate: None,
         error: None,
         light_grids: Vec::new(),
+        light_maps: Vec::new(),
         samples_per_pixel: 0,
         adaptive: None,
         mean_samples_per_pixel: 0.0,
@@ -201,6 +208,12 @@ impl Pictures<'_> {
             self.progress.at(self.pixels * self.stats.frames);
             return Ok(());
         }
+        let mut frame = frame;
+        let maps = timed(&mut self.stats.milliseconds.styles, || session.prepare_styles(&mut frame, size))?;
+        if let Some(path) = &self.arguments.light_map {
+            write_light_maps(&maps, path)?;
+        }
+        self.stats.light_maps = maps.iter().map(LightMap::new).collect();
         let rendered = self.compute(frame, sampling)?;
         timed(&mut self.stats.milliseconds.write, || write(&rendered, path))?;
         self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
@@ -249,6 +262,18 @@ impl Pictures<'_> {
 
 fn write(rendered: &Rendered, path: &Path) -> Result<(), Failure> {
     output::write_picture(&rendered.image, rendered.costs.as_deref(), path)
+}
+
+/// Writes light maps as pictures; of several each with the name of its style.
+fn write_light_maps(maps: &[FittedMap], path: &Path) -> Result<(), Failure> {
+    for map in maps {
+        let named = match maps {
+            [_] => path.to_owned(),
+            _ => output::with_suffix(path, &map.style),
+        };
+        output::write_picture(&styles::as_image(map), None, &named)?;
+    }
+    Ok(())
 }
 
 fn write_stats(stats: &Stats, path: &Path) -> Result<(), Failure> {

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use serde::ser::SerializeMap as _;
 use serde::{Serialize, Serializer};
 use vol_compiler::frame::{Counts, Quadrature};
+use vol_runtime_cpu::style::FittedMap;
 use vol_runtime_cpu::{GridChoice, Method};
 
 use super::memory::Memory;
@@ -52,6 +53,9 @@ pub(super) struct Stats {
     pub(super) error: Option<f64>,
     /// What was chosen for each light of the last frame.
     pub(super) light_grids: Vec<LightGrid>,
+    /// Light maps of the last frame.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) light_maps: Vec<LightMap>,
     /// Samples of a pixel asked for, or the most; the largest of all frames.
     pub(super) samples_per_pixel: u32,
     /// Error of a pixel at which it takes no more samples, 0 for none; the smallest of all frames.
@@ -126,6 +130,33 @@ impl LightGrid {
     }
 }
 
+/// How a light map met its strokes.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LightMap {
+    pub(super) style: String,
+    pub(super) size: u32,
+    /// Of the fit; nothing for a map that was kept from an earlier run.
+    pub(super) pixels: Option<usize>,
+    pub(super) iterations: Option<usize>,
+    pub(super) converged: Option<bool>,
+    /// Difference to the colours asked for, over these.
+    pub(super) residual: Option<f64>,
+}
+
+impl LightMap {
+    pub(super) fn new(map: &FittedMap) -> Self {
+        let fit = map.fit.as_ref();
+        Self {
+            style: map.style.clone(),
+            size: map.table.size,
+            pixels: fit.map(|fit| fit.pixels),
+            iterations: fit.map(|fit| fit.iterations),
+            converged: fit.map(|fit| fit.converged),
+            residual: fit.map(|fit| fit.residual),
+        }
+    }
+}
+
 /// Time per phase.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Phases {
@@ -138,6 +169,9 @@ pub(super) struct Phases {
     /// Compiling the shader for the device.
     #[serde(serialize_with = "milliseconds")]
     pub(super) prepare: Duration,
+    /// Preparing styles.
+    #[serde(serialize_with = "milliseconds")]
+    pub(super) styles: Duration,
     /// Choosing the step size.
     #[serde(serialize_with = "milliseconds")]
     pub(super) pilot: Duration,

@@ -39,6 +39,7 @@ mod spec;
 mod stress;
 #[cfg(feature = "gpu")]
 mod strict;
+mod styles;
 mod support;
 mod surfaces;
 mod tubes;
@@ -63,6 +64,7 @@ fn main() -> std::process::ExitCode {
     trials.extend(generated::trials());
     trials.extend(library::trials());
     trials.extend(light_grids::trials());
+    trials.extend(styles::trials());
     trials.extend(lights::trials());
     trials.extend(mandelbulb::trials());
     trials.extend(media::trials());

@@ -4,7 +4,9 @@
 use crate::differential::{function_of, on_cpu, on_gpu, operands};
 use crate::generated::{compiled, scenes};
 use crate::gpu_device::strict_trial;
-use crate::support::{FIRST, Random, compile_file, ensure, examples, frame, point, program_of, render};
+use crate::support::{
+    FIRST, Random, compile_file, ensure, examples, frame, frame_at, point, program_of, render,
+};
 use libtest_mimic::{Failed, Trial};
 use std::sync::atomic::AtomicBool;
 use vol::backend::Device;
@@ -198,7 +200,7 @@ fn random_scenes(gpu: &Gpu, part: u64) -> Result<(), Failed> {
 fn same_scene(gpu: &Gpu, bytes: &[u8], seed: u64) -> Result<(), Failed> {
     let Some(program) = compiled(bytes)? else { return Ok(()) };
     let size = [12, 8];
-    let frame = program.frame(&program.default_params(), 0.7, 2.0, size).map_err(|d| d.message)?;
+    let frame = frame_at(&program, [0.7, 2.0], size)?;
     same_fields(gpu, &program, &frame, 24)?;
     if !(seed / PARTS).is_multiple_of(DRAWN) {
         return Ok(());

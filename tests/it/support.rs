@@ -73,6 +73,7 @@ pub(crate) fn diagnose(file: SourceFile) -> Diagnosed {
     }
     let frame =
         program.as_ref().map(|ready| ready.frame(&ready.default_params(), 0.0, 0.0, ready.render.size));
+    let frame = frame.map(|frame| styled(program.as_ref(), frame?, &sources));
     match (&program, frame) {
         (Some(ready), Some(Ok(frame))) => diagnostics.extend(vol_compiler::lints::warnings(ready, &frame)),
         (_, Some(Err(diagnostic))) => {
@@ -82,6 +83,21 @@ pub(crate) fn diagnose(file: SourceFile) -> Diagnosed {
         (_, None | Some(Ok(_))) => {}
     }
     Diagnosed { program, diagnostics, sources }
+}
+
+/// The frame with its styles prepared.
+fn styled(program: Option<&Program>, mut frame: Frame, sources: &Sources) -> Result<Frame, Diagnostic> {
+    let Some(program) = program else { return Ok(frame) };
+    let images = match vol::styles::pictures(sources, program) {
+        Ok(images) => images,
+        Err(vol::failure::Failure::Scene { diagnostics, .. }) => {
+            return Err(diagnostics.into_iter().next().expect("a failure has a reason"));
+        }
+        Err(_) => Vec::new(),
+    };
+    let prepared = vol_runtime_cpu::style::prepare(program, &frame, program.render.size, &images, &|_| None)?;
+    frame.styled_lights = prepared.lights;
+    Ok(frame)
 }
 
 /// Imports come from `tests/ui`.
@@ -103,7 +119,18 @@ pub(crate) fn compile_file(path: &Path) -> Result<Program, Failed> {
 
 /// A frame at a time with default params.
 pub(crate) fn frame(program: &Program, time: f64, size: [u32; 2]) -> Result<Frame, Failed> {
-    program.frame(&program.default_params(), time, 0.0, size).map_err(|diagnostic| diagnostic.message.into())
+    frame_at(program, [time, 0.0], size)
+}
+
+/// A frame at a time and with a number, its styles prepared.
+pub(crate) fn frame_at(program: &Program, [time, number]: [f64; 2], size: [u32; 2]) -> Result<Frame, Failed> {
+    let prepared = || {
+        let mut frame = program.frame(&program.default_params(), time, number, size)?;
+        let prepared = vol_runtime_cpu::style::prepare(program, &frame, size, &[], &|_| None)?;
+        frame.styled_lights = prepared.lights;
+        Ok::<_, Diagnostic>(frame)
+    };
+    prepared().map_err(|diagnostic| diagnostic.message.into())
 }
 
 /// A small picture on the CPU.

@@ -2,6 +2,7 @@
 
 use super::CameraFrame;
 use super::extent::Box3;
+use crate::program::style;
 use glam::DVec3;
 
 /// Camera settings of one frame.
@@ -39,6 +40,16 @@ pub(super) fn camera(view: &View, bounds: Box3) -> CameraFrame {
         forward: super::round3(forward.into()),
         right: super::round3((right * half_width).into()),
         up: super::round3((up * half_height).into()),
+    }
+}
+
+impl CameraFrame {
+    /// The camera of a view that strokes were painted in, for a picture of a size in pixels.
+    #[must_use]
+    pub fn of_view(view: &style::View<f64>, [width, height]: [u32; 2]) -> Self {
+        let aspect = f64::from(width) / f64::from(height);
+        let view = View { from: Some(view.from), at: Some(view.at), up: view.up, fov: view.fov, aspect };
+        camera(&view, super::extent::EMPTY)
     }
 }
 

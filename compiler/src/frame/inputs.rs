@@ -15,7 +15,8 @@ use std::collections::BTreeSet;
 pub struct Inputs(Vec<u64>);
 
 impl Inputs {
-    /// Of the picture of a frame, whatever the job. Grids of lights do not count: they are chosen from the rest.
+    /// Of the picture of a frame, whatever the job. Grids of lights and what styles make of lights do not count: they come
+    /// from the rest.
     #[must_use]
     pub fn of_picture(program: &Program, frame: &Frame) -> Self {
         let Frame {
@@ -28,6 +29,8 @@ impl Inputs {
             media,
             lights,
             light_grids: _,
+            styles,
+            styled_lights: _,
             background,
             bounds,
             skips,
@@ -41,6 +44,7 @@ impl Inputs {
         media.iter().for_each(|medium| inputs.medium(medium));
         inputs.whole(lights.len() as u64);
         lights.iter().for_each(|light| inputs.light(light));
+        inputs.text(&format!("{styles:?}"));
         inputs.numbers(background);
         inputs.aabb(bounds);
         inputs.whole(skips.bits().into());
@@ -60,6 +64,12 @@ impl Inputs {
 
     fn whole(&mut self, number: u64) {
         self.0.push(number);
+    }
+
+    /// A text that tells all numbers apart, as the debug form of plain data does.
+    fn text(&mut self, text: &str) {
+        self.whole(text.len() as u64);
+        self.0.extend(text.bytes().map(u64::from));
     }
 
     fn numbers(&mut self, numbers: &[f32]) {
@@ -134,7 +144,8 @@ fn picture_functions(program: &Program) -> impl Iterator<Item = FunctionId> {
     let media = program.media.iter();
     let media = media.flat_map(|medium| [medium.region, medium.interior, medium.extinction, medium.phase]);
     let named: BTreeSet<FunctionId> = program.fields.iter().map(|field| field.function).collect();
-    let used: BTreeSet<FunctionId> = objects.chain(media).collect();
+    let styles = program.styles.iter().filter_map(|style| Some(style.heterogeneity?.field));
+    let used: BTreeSet<FunctionId> = objects.chain(media).chain(styles).collect();
     let all = (0..program.module.functions.len() as u32).map(FunctionId);
     all.filter(move |function| used.contains(function) || !named.contains(function))
 }

@@ -1,6 +1,6 @@
 //! Expressions to compile-time values.
 
-use super::value::{Closure, LocalPoint, Value};
+use super::value::{Closure, LocalPoint, Value, Word};
 use super::{Lowered, Lowerer, MAX_DEPTH, MAX_UNROLLED};
 use crate::ir::graph::Rate;
 use crate::ir::{Inst, ValueId};
@@ -110,16 +110,32 @@ impl Lowerer<'_> {
                 Value::Record(fields) => fields[*field as usize].clone(),
                 other => unreachable!("the checker gives a record, not {other:?}"),
             },
-            // A word whose arguments matter belongs to a style, which is not lowered.
-            ExprKind::Choice(word, _) => Value::String((*word).into()),
+            ExprKind::Choice(word, arguments) if arguments.is_empty() => Value::String((*word).into()),
+            ExprKind::Choice(name, arguments) => {
+                let arguments = self.placed(arguments)?;
+                Value::Word(Rc::new(Word { name, arguments, span: expr.span }))
+            }
             ExprKind::BlockName(name) => Value::String(name.as_str().into()),
-            ExprKind::Settings(_) => unreachable!("only styles hold settings, and they are not lowered"),
+            ExprKind::Settings(entries) => {
+                let value =
+                    |&(key, id): &(&'static str, ExprId)| Ok((key, self.expr(id)?, hir.expr(id).span));
+                Value::Settings(entries.iter().map(value).collect::<Lowered<_>>()?)
+            }
             ExprKind::Error => unreachable!("a scene with errors is not lowered"),
         })
     }
 
     fn all(&mut self, ids: &[ExprId]) -> Lowered<Vec<Value>> {
         ids.iter().map(|&id| self.expr(id)).collect()
+    }
+
+    /// Values with their places, as far as they are given.
+    fn placed(&mut self, ids: &[Option<ExprId>]) -> Lowered<Vec<Option<(Value, Span)>>> {
+        let value = |id: &Option<ExprId>| match id {
+            Some(id) => Ok(Some((self.expr(*id)?, self.hir.expr(*id).span))),
+            None => Ok(None),
+        };
+        ids.iter().map(value).collect()
     }
 
     fn number(&mut self, number: f64) -> Value {

@@ -16,6 +16,9 @@ impl Lowerer<'_> {
             frames.push((place, self.expr(value)?));
         }
         let Some((_, first)) = frames.first() else { unreachable!("the checker asks for a key") };
+        if matches!(first, Value::List(_)) {
+            return self.keyed_lists(at, frames, keys.ease);
+        }
         let mut result = first.numbers().to_vec();
         for pair in frames.windows(2) {
             let [(start, before), (end, after)] = pair else { unreachable!("windows of two") };
@@ -30,6 +33,13 @@ impl Lowerer<'_> {
             }
         }
         Ok(Value::Numbers(result))
+    }
+
+    /// Lists are kept whole, with the share of each: what they make is mixed, not they.
+    fn keyed_lists(&mut self, at: ValueId, frames: Vec<(f64, Value)>, ease: Ease) -> Lowered<Value> {
+        let shares = frames.windows(2).map(|pair| self.share(at, pair[0].0, pair[1].0, ease));
+        let shares = shares.collect::<Lowered<_>>()?;
+        Ok(Value::Keyed(frames.into_iter().map(|(_, list)| list).collect(), shares))
     }
 
     /// The share of the next key, eased: 0 at `start`, 1 from `end` on.

@@ -1,6 +1,7 @@
 //! Blocks to the plan of the program.
 
 mod medium;
+mod style;
 
 use super::optics::Material;
 use super::shape::{self, Shape};
@@ -8,7 +9,8 @@ use super::tube::Tube;
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer};
 use crate::ir::ValueId;
-use crate::program::{Camera, Field, Light, LightKind, Medium, Object, Render, Slot, Slot3};
+use crate::program::style::{ImageFile, Style};
+use crate::program::{Camera, Field, Light, LightKind, Lighting, Medium, Object, Render, Slot, Slot3};
 use std::rc::Rc;
 use vol_language::blocks::BlockKind;
 use vol_language::diag::Diagnostic;
@@ -22,6 +24,8 @@ pub(super) struct Plan {
     pub(super) objects: Vec<Object>,
     pub(super) media: Vec<Medium>,
     pub(super) lights: Vec<Light>,
+    pub(super) styles: Vec<Style<Slot>>,
+    pub(super) images: Vec<ImageFile>,
     pub(super) camera: Camera,
     pub(super) render: Render,
     pub(super) fields: Vec<Field>,
@@ -50,6 +54,8 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
         objects: Vec::new(),
         media: Vec::new(),
         lights: Vec::new(),
+        styles: Vec::new(),
+        images: Vec::new(),
         camera: keep(lowerer, camera)?,
         render: keep(lowerer, render)?,
         fields: Vec::new(),
@@ -71,8 +77,16 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
                 let medium = medium::medium(lowerer, block, &mut plan);
                 keep(lowerer, medium);
             }
-            BlockKind::Style => lowerer.report(idle_style(block)),
-            BlockKind::Camera | BlockKind::Render => {}
+            // After all lights.
+            BlockKind::Style | BlockKind::Camera | BlockKind::Render => {}
+        }
+    }
+    for block in hir.blocks.iter().filter(|block| block.kind == BlockKind::Style) {
+        lowerer.graph.set_place(Some(block.span));
+        let style = style::style(lowerer, block, &mut plan);
+        plan.styles.extend(keep(lowerer, style).flatten());
+        if !plan.media.iter().any(|medium| medium.lighting == Lighting::Shadowed) {
+            lowerer.report(style::nothing_to_style(block));
         }
     }
     lowerer.graph.set_place(None);
@@ -81,13 +95,6 @@ pub(super) fn plan(lowerer: &mut Lowerer<'_>) -> Option<Plan> {
     }
     function_fields(lowerer, &mut plan.fields);
     Some(plan)
-}
-
-/// Styles are checked in full, but nothing renders them.
-fn idle_style(block: &Block) -> Diagnostic {
-    let message = format!("the style `{}` does not change the picture yet", block.name);
-    Diagnostic::warning("W0401", message, block.span, "checked, but not rendered")
-        .with_help("the scene renders as if the style were off")
 }
 
 fn keep<T>(lowerer: &mut Lowerer<'_>, lowered: Lowered<T>) -> Option<T> {

@@ -6,6 +6,7 @@ use super::shape::Shape;
 use crate::ir::ValueId;
 use std::rc::Rc;
 use vol_language::hir::{ExprId, LocalId};
+use vol_language::source::Span;
 
 /// A value at compile time. Numbers that are not constant are nodes of the graph.
 #[derive(Clone, Debug)]
@@ -30,6 +31,20 @@ pub(crate) enum Value {
     Local(Rc<LocalPoint>),
     /// The last state of a loop, by field.
     Record(Rc<[Value]>),
+    /// A word with arguments.
+    Word(Rc<Word>),
+    /// Given settings by key, with their places.
+    Settings(Rc<[(&'static str, Value, Span)]>),
+    /// Lists at keys, and the share of each key after the first against the one before.
+    Keyed(Rc<[Value]>, Rc<[ValueId]>),
+}
+
+/// A word with arguments, each with its place; none where it is left out.
+#[derive(Debug)]
+pub(crate) struct Word {
+    pub(crate) name: &'static str,
+    pub(crate) arguments: Vec<Option<(Value, Span)>>,
+    pub(crate) span: Span,
 }
 
 impl Value {
@@ -45,7 +60,10 @@ impl Value {
             | Self::Material(_)
             | Self::Phase(_)
             | Self::Local(_)
-            | Self::Record(_) => &[],
+            | Self::Record(_)
+            | Self::Word(_)
+            | Self::Settings(_)
+            | Self::Keyed(..) => &[],
         }
     }
 

@@ -19,6 +19,7 @@ impl<'a> Checker<'a> {
     /// constraint a pair. A name that stands for something else may still hold such a value.
     pub(super) fn is_worded(&self, expr: &Expr, kind: ChoiceKind) -> bool {
         match &expr.kind {
+            _ if kind == ChoiceKind::Enhancement => true,
             ExprKind::Name(name) => {
                 let is_other = self.scope.find(name).is_some() || self.item_named(name).is_some();
                 !is_other || self.word(kind, name).is_some()
@@ -34,10 +35,19 @@ impl<'a> Checker<'a> {
         kind.words().into_iter().find(|word| word.name == name)
     }
 
+    /// Whether an expression is a call of one of a choice's words.
+    fn calls_word(&self, expr: &Expr, kind: ChoiceKind) -> bool {
+        let ExprKind::Call(callee, _) = &expr.kind else { return false };
+        matches!(&callee.kind, ExprKind::Name(name) if self.word(kind, name).is_some())
+    }
+
     /// A word of a choice; [`Self::is_worded`] holds.
     pub(super) fn choice(&mut self, expr: &'a Expr, kind: ChoiceKind) -> ExprId {
         let span = expr.span;
         let (name, name_span, args) = match &expr.kind {
+            _ if kind == ChoiceKind::Enhancement && !self.calls_word(expr, kind) => {
+                ("extrude", span, vec![Arg::unnamed(expr)])
+            }
             ExprKind::Name(name) | ExprKind::String(name) => (name.as_str(), span, Vec::new()),
             ExprKind::Call(callee, arguments) => match &callee.kind {
                 ExprKind::Name(name) => (name.as_str(), callee.span, Arg::list(arguments)),

@@ -17,6 +17,7 @@ use super::medium::{Chunk, Glow};
 use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
+use super::styled::StyledRays;
 use crate::real::{Real, Vec3, add, mul, scale, sub};
 use std::array;
 
@@ -36,6 +37,7 @@ impl<F: Fields> Integrator<'_, F> {
     pub(super) fn panel_chunk(
         &mut self,
         rays: &[Ray<F::Real>],
+        styled: &StyledRays<F::Real>,
         combs: &Combs<'_, F::Real>,
         active: &[Cursor],
         glows: &[Glow<F::Real>],
@@ -60,7 +62,7 @@ impl<F: Fields> Integrator<'_, F> {
             fillings.push(filling);
             lists.push(list);
         }
-        self.light_places(rays, active, &mut fillings);
+        self.light_places(rays, styled, active, &mut fillings, None);
         // Add up what they send.
         for (filling, list) in fillings.iter().zip(lists) {
             for panel in list {

@@ -16,6 +16,7 @@ use super::comb::{Combs, Cursor, Inside};
 use super::fields::Fields;
 use super::scatter::{Filling, Place, scatters};
 use super::scene::Integrator;
+use super::styled::StyledRays;
 use crate::real::{Real, Vec3, add, largest, mul, scale, splat};
 use std::array;
 use vol_compiler::frame::Quadrature;
@@ -68,19 +69,26 @@ impl<R: Real> Chunk<R> {
         let decay = vec![splat(R::ONE); slots];
         Self { depth: vec![zero; slots], decay, arriving: vec![None; slots], sent: vec![zero; slots] }
     }
+
+    /// What leaves a node of a source that is spread over its optical depth.
+    pub(super) fn mean(&self, slot: usize, source: Vec3<R>) -> Vec3<R> {
+        let [depth, decay] = [self.depth[slot], self.decay[slot]];
+        mul(source, array::from_fn(|channel| depth[channel].mean_decay(decay[channel])))
+    }
 }
 
 impl<F: Fields> Integrator<'_, F> {
     /// Follows each ray through the media up to its end.
     pub(crate) fn march(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Glow<F::Real>> {
         let mut glows = vec![Glow::clear(); rays.len()];
+        let styled = self.style_rays(rays, ends);
         let combs = self.combs(rays, ends, self.scene.step);
         let mut active = combs.active();
         while !active.is_empty() {
             let before = self.stats.medium_samples;
             let chunk = match self.scene.quadrature {
-                Quadrature::Midpoint => self.node_chunk(rays, &combs, &active, &glows),
-                Quadrature::Corrected => self.panel_chunk(rays, &combs, &active, &glows),
+                Quadrature::Midpoint => self.node_chunk(rays, &styled, &combs, &active, &glows),
+                Quadrature::Corrected => self.panel_chunk(rays, &styled, &combs, &active, &glows),
             };
             self.gather(&active, &mut glows, &chunk);
             let nodes = active.len() as u64 * self.batches.nodes as u64;
@@ -101,33 +109,51 @@ impl<F: Fields> Integrator<'_, F> {
     fn node_chunk(
         &mut self,
         rays: &[Ray<F::Real>],
+        styled: &StyledRays<F::Real>,
         combs: &Combs<'_, F::Real>,
         active: &[Cursor],
         glows: &[Glow<F::Real>],
     ) -> Chunk<F::Real> {
-        let mut chunk = Chunk::new(active.len() * self.batches.nodes as usize);
+        let (mut chunk, fillings) = self.lit_nodes(rays, styled, combs, active, glows, None);
+        // Add up what they send.
+        let nodes = self.batches.nodes as usize;
+        for filling in &fillings {
+            for (place, &source) in filling.places.iter().zip(&filling.source) {
+                let slot = place.which * nodes + place.node.unwrap_or(0);
+                chunk.sent[slot] = add(chunk.sent[slot], chunk.mean(slot, source));
+            }
+        }
+        chunk
+    }
+
+    /// Optical depth of the next nodes, and the media at them with what they send; of one lamp's light alone if one is
+    /// named.
+    pub(super) fn lit_nodes(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        styled: &StyledRays<F::Real>,
+        combs: &Combs<'_, F::Real>,
+        active: &[Cursor],
+        glows: &[Glow<F::Real>],
+        only: Option<usize>,
+    ) -> (Chunk<F::Real>, Vec<Filling<F::Real>>) {
+        let nodes = self.batches.nodes as usize;
+        let mut chunk = Chunk::new(active.len() * nodes);
         let fillings = 0..self.scene.media.len();
         let fillings = fillings.map(|medium| self.fill(medium, rays, combs, active, &mut chunk));
         let mut fillings: Vec<_> = fillings.collect();
         self.transmit(active, glows, &mut chunk);
-        let nodes = self.batches.nodes as usize;
         let slot = |place: &Place<F::Real>| place.which * nodes + place.node.unwrap_or(0);
         for filling in &mut fillings {
             let places = filling.places.iter().zip(&filling.scatter);
             let lit = places.map(|(place, &k)| chunk.arriving[slot(place)].is_some() && scatters(k));
             filling.lit = lit.collect();
-        }
-        self.light_places(rays, active, &mut fillings);
-        // Add up what they send.
-        for filling in &fillings {
-            for (place, &source) in filling.places.iter().zip(&filling.source) {
-                let slot = slot(place);
-                let [depth, decay] = [chunk.depth[slot], chunk.decay[slot]];
-                let sent = mul(source, array::from_fn(|channel| depth[channel].mean_decay(decay[channel])));
-                chunk.sent[slot] = add(chunk.sent[slot], sent);
+            if only.is_some() {
+                filling.source.fill(splat(F::Real::ZERO));
             }
         }
-        chunk
+        self.light_places(rays, styled, active, &mut fillings, only);
+        (chunk, fillings)
     }
 
     /// Evaluates one medium at the next nodes and adds its optical depths.
@@ -176,7 +202,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Adds up the nodes of each ray, front to back.
-    fn gather(&self, active: &[Cursor], glows: &mut [Glow<F::Real>], chunk: &Chunk<F::Real>) {
+    pub(super) fn gather(&self, active: &[Cursor], glows: &mut [Glow<F::Real>], chunk: &Chunk<F::Real>) {
         let nodes = self.batches.nodes as usize;
         for (which, cursor) in active.iter().enumerate() {
             let glow = &mut glows[cursor.ray];

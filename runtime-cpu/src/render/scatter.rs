@@ -9,6 +9,7 @@ use super::fields::{Fields, Points};
 use super::scene::{Integrator, Light};
 use super::shade::{Arriving, arriving};
 use super::shadow::ShadowRay;
+use super::styled::{StyledRay, StyledRays, asked};
 use super::surface::shadow_bias;
 use crate::real::{Real, Vec3, add, dot, mul, scale, splat, sub};
 use vol_compiler::program::Lighting;
@@ -44,18 +45,21 @@ pub(crate) fn scatters<R: Real>(scatter: Vec3<R>) -> bool {
 }
 
 impl<F: Fields> Integrator<'_, F> {
-    /// Adds the light of all lamps to the sources.
+    /// Adds the light of all lamps to the sources, or that of one of them.
     pub(super) fn light_places(
         &mut self,
         rays: &[Ray<F::Real>],
+        styled: &StyledRays<F::Real>,
         active: &[Cursor],
         fillings: &mut [Filling<F::Real>],
+        only: Option<usize>,
     ) {
-        for index in 0..self.scene.lights.len() {
+        for index in (0..self.scene.lights.len()).filter(|&index| only.is_none_or(|only| index == only)) {
             let light = self.scene.lights[index];
-            let seen = self.place_visibility(&light, active, fillings);
+            let styled = styled[index].as_deref();
+            let seen = self.place_visibility(&light, rays, styled, active, fillings);
             for (filling, seen) in fillings.iter_mut().zip(seen) {
-                self.scatter_light(&light, rays, active, filling, &seen);
+                self.scatter_light(&light, rays, styled, active, filling, &seen);
             }
         }
     }
@@ -65,6 +69,7 @@ impl<F: Fields> Integrator<'_, F> {
         &mut self,
         light: &Light<F::Real>,
         rays: &[Ray<F::Real>],
+        styled: Option<&[StyledRay<F::Real>]>,
         active: &[Cursor],
         filling: &mut Filling<F::Real>,
         seen: &[Vec3<F::Real>],
@@ -85,9 +90,16 @@ impl<F: Fields> Integrator<'_, F> {
         let more: Vec<_> = angles.iter().map(|angle| angle[1]).collect();
         let [phase] = self.fields.apply(medium.phase, &[&less, &more]);
         // Add what arrives and is turned towards the eye.
+        let table = self.scene.styled(light);
         for ((place, lamp), phase) in lit.into_iter().zip(lamps).zip(phase) {
-            let free = medium.lighting == Lighting::Unshadowed;
-            let arrives = if free { splat(F::Real::ONE) } else { seen[place] };
+            let arrives = match (medium.lighting, &table, styled) {
+                (Lighting::Unshadowed, ..) => splat(F::Real::ONE),
+                (_, Some(table), Some(styled)) => {
+                    let (ray, _) = asked(active, &filling.places[place]);
+                    mul(seen[place], self.styled_tint(table, &styled[ray], filling.points.get(place)))
+                }
+                _ => seen[place],
+            };
             let light = mul(scale(filling.scatter[place], phase), mul(lamp.irradiance, arrives));
             filling.source[place] = add(filling.source[place], light);
         }
@@ -98,6 +110,8 @@ impl<F: Fields> Integrator<'_, F> {
     fn place_visibility(
         &mut self,
         light: &Light<F::Real>,
+        rays: &[Ray<F::Real>],
+        styled: Option<&[StyledRay<F::Real>]>,
         active: &[Cursor],
         fillings: &[Filling<F::Real>],
     ) -> Vec<Vec<Vec3<F::Real>>> {
@@ -109,19 +123,20 @@ impl<F: Fields> Integrator<'_, F> {
         // One node more than panels.
         let nodes = self.batches.nodes as usize + 1;
         let mut known = vec![None; active.len() * nodes];
-        let (mut asking, mut shadow_rays) = (Vec::new(), Vec::new());
+        let (mut asking, mut places, mut shadow_rays) = (Vec::new(), Vec::new(), Vec::new());
         for (which, filling) in fillings.iter().enumerate() {
             if self.scene.media[filling.medium].lighting != Lighting::Shadowed {
                 continue;
             }
             for (index, place) in filling.places.iter().enumerate().filter(|&(index, _)| filling.lit[index]) {
                 let node = place.node.map(|node| place.which * nodes + node);
-                let asked = node.and_then(|node| known[node]);
-                let number = asked.unwrap_or(shadow_rays.len());
-                if asked.is_none() {
+                let earlier = node.and_then(|node| known[node]);
+                let number = earlier.unwrap_or(shadow_rays.len());
+                if earlier.is_none() {
                     let origin = filling.points.get(index);
                     let lamp = arriving(light, origin);
                     let ray = Ray::new(origin, lamp.direction);
+                    places.push(asked(active, place));
                     shadow_rays.push(ShadowRay::new(ray, lamp.distance, shadow_bias(self.scene, place.t)));
                 }
                 if let Some(node) = node {
@@ -130,7 +145,12 @@ impl<F: Fields> Integrator<'_, F> {
                 asking.push((which, index, number));
             }
         }
-        let found = self.visibility(&shadow_rays, light);
+        let found = match (self.scene.styled(light), styled) {
+            (Some(table), Some(styled)) => {
+                self.styled_visibility(light, &table, rays, styled, &places, &shadow_rays)
+            }
+            _ => self.visibility(&shadow_rays, light),
+        };
         asking.into_iter().for_each(|(which, index, number)| seen[which][index] = found[number]);
         seen
     }

@@ -7,7 +7,9 @@ use super::medium::STOP;
 use super::method::Way;
 use super::shadow::OPAQUE;
 use crate::real::{Real, Vec3, length, vector};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use vol_compiler::frame::styled::StyledLight;
 use vol_compiler::frame::{Frame, Job, Quadrature};
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Lighting;
@@ -35,6 +37,8 @@ pub(crate) struct Scene<R> {
     pub(crate) lights: Vec<Light<R>>,
     /// Their grids, as far as there are any.
     pub(crate) grids: Vec<Option<Grid<R>>>,
+    /// What styles make of them, as far as they do.
+    pub(crate) styled_lights: Vec<Option<Arc<StyledLight>>>,
     /// Radiance where nothing is hit.
     pub(crate) background: Vec3<R>,
     /// Rays end where less than this of the light arrives, [`STOP`] or 0.
@@ -146,6 +150,7 @@ impl<R: Real> Scene<R> {
             media: media(frame),
             lights: lights.collect(),
             grids: frame.light_grids.iter().map(|grid| grid.as_ref().map(Grid::new)).collect(),
+            styled_lights: frame.styled_lights.clone(),
             background: vector(frame.background),
             stop: R::from_f32(if frame.skips.has(Skip::Opaque) { STOP } else { 0.0 }),
             opaque: R::from_f32(if frame.skips.has(Skip::Opaque) { OPAQUE } else { f32::INFINITY }),

@@ -72,7 +72,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// The part of each light that solids let through, weakened by the media.
-    fn through_media(
+    pub(super) fn through_media(
         &mut self,
         rays: &[ShadowRay<F::Real>],
         parts: &[F::Real],
@@ -111,7 +111,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Whether the ray enters a solid before it reaches the light.
-    pub(super) fn blocked(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<bool> {
+    pub(crate) fn blocked(&mut self, rays: &[ShadowRay<F::Real>]) -> Vec<bool> {
         let mut blocked = vec![false; rays.len()];
         if self.scene.solids.is_empty() {
             return blocked;
@@ -140,6 +140,37 @@ impl<F: Fields> Integrator<'_, F> {
             }
         }
         blocked
+    }
+
+    /// Distance at which each ray first enters a solid from outside, up to a length; steps are no shorter than `least`.
+    pub(crate) fn entries(
+        &mut self,
+        rays: &[Ray<F::Real>],
+        length: F::Real,
+        least: F::Real,
+    ) -> Vec<Option<F::Real>> {
+        let mut entries = vec![None; rays.len()];
+        let met = self.met_from_outside(rays);
+        let mut walkers: Vec<_> = start(rays.len());
+        for step in 1..=MAX_STEPS {
+            let near = self.nearest(rays, &met, &walkers);
+            let mut left = Vec::with_capacity(walkers.len());
+            for (walker, near) in walkers.into_iter().zip(near) {
+                if near.distance < F::Real::ZERO {
+                    entries[walker.ray] = Some(walker.t);
+                    continue;
+                }
+                let t = walker.t + near.advance(step, least);
+                if t < length {
+                    left.push(Walker { ray: walker.ray, t, from: walker.t });
+                }
+            }
+            walkers = left;
+            if walkers.is_empty() {
+                break;
+            }
+        }
+        entries
     }
 
     /// Integral of the extinction along each ray.

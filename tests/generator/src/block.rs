@@ -17,11 +17,9 @@ impl Generator<'_> {
             let kind = self.source.pick(&[BlockKind::Object, BlockKind::Medium]);
             self.solid_block(kind, index);
         }
-        let lights = self.source.below(3);
-        for index in 0..lights {
-            self.light(index);
-        }
-        if lights > 0 && self.source.once_in(3) {
+        let distant: Vec<bool> = (0..self.source.below(3)).map(|index| self.light(index)).collect();
+        // Styles are of distant lights.
+        if distant.first() == Some(&true) && self.source.once_in(2) {
             self.style();
         }
         if self.source.once_in(2) {
@@ -80,7 +78,8 @@ impl Generator<'_> {
         self.write_block(kind, &name, entries);
     }
 
-    fn light(&mut self, index: usize) {
+    /// Whether it is a distant one.
+    fn light(&mut self, index: usize) -> bool {
         let place = if self.source.once_in(2) { "from" } else { "at" };
         let mut entries = vec![format!("{place}: {}", self.direction())];
         let size = if place == "from" { "spread" } else { "radius" };
@@ -101,22 +100,43 @@ impl Generator<'_> {
             }
         }
         self.write_block(BlockKind::Light, &format!("lamp{index}"), entries);
+        place == "from"
     }
 
-    /// A style of the first light. Its values are few: nothing is computed from them.
+    /// A style of the first light. Shafts that are marched have no map to change.
     fn style(&mut self) {
         let mut entries = vec!["light: lamp0".to_owned()];
-        let options = [
-            "shadow_map: 512",
+        let of_map = [
             "fill_holes: disk(11)",
+            "fill_holes: epipolar(7 + 3 * time)",
             "enhance_silhouettes: 20 + time",
             "make_holes: { frequency: 0.3, phase: 0.2 * time }",
+            "make_holes: { frequency: 0.1, octaves: 2, threshold: sin(time), noise: printed }",
+        ];
+        let of_all = [
             "transfer: [gradient((0, 0), #ffb347, (1, 0), #26004d), image(\"a.png\", blend: alpha(0.5))]",
-            "light_map: paint(strokes: [stroke(camera, (1, 2), (3, 4), 2, #fff)])",
-            "heterogeneity: { noise: perlin, brushes: [brush((0, 1, 0), (1, 2, 1)), eraser((0, 0, 0), 1)] }",
+            "transfer: keys(time, 0: [solid(#ff8800)], 2: [diffusion([((0, 0.5), #fff), (at: (0, 0, 0), #08f)])])",
+            "depth_range: (1 + time, 20)",
+            "light_map: paint(8, [stroke(camera, (0, 1), (3, 4), 2, #fff)])",
+            "heterogeneity: { noise: perlin, steps: 3, brushes: [brush((0, 1, 0), (1, 2, 1)), eraser((0, 0, 0), 1)] }",
+            "heterogeneity: { frequency: 2 + time, amount: 0.5, steps: 4, upsample: 4 }",
             "when: time < 2",
         ];
-        entries.extend(options.iter().filter(|_| self.source.once_in(2)).map(|entry| (*entry).to_owned()));
+        if self.source.once_in(4) {
+            entries.push("shafts: exact".to_owned());
+        } else {
+            entries.push("shadow_map: 64".to_owned());
+            entries.extend(of_map.iter().filter(|_| self.source.once_in(3)).map(|entry| (*entry).to_owned()));
+        }
+        entries.extend(of_all.iter().filter(|_| self.source.once_in(3)).map(|entry| (*entry).to_owned()));
+        // Each key once.
+        let key = |entry: &str| entry.split(':').next().unwrap_or_default().to_owned();
+        let mut seen = Vec::new();
+        entries.retain(|entry| {
+            let new = !seen.contains(&key(entry));
+            seen.push(key(entry));
+            new
+        });
         self.write_block(BlockKind::Style, "mood", entries);
     }
 

@@ -30,6 +30,7 @@ struct Panels {
 
 fn march_panels(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
+    var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var panels: Panels;
     panels.lit = false;
@@ -39,7 +40,7 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = light_ends(ray, t, &panels);
+            lit_after = light_ends(ray, t, &styled, &panels);
             glow = gather(glow, node, Chunk(panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -95,7 +96,7 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
 }
 
 // Lights the ends of panels with matter; whether those at the node after are among them.
-fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
+fn light_ends(ray: Ray, t: vec2f, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
     var lit_after = false;
     for (var place = 0u; place < (WALL + (MOST_WALLS * MEDIUM_COUNT)); place++) {
         // Media share nodes; each has walls of its own.
@@ -122,7 +123,7 @@ fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
             }
         }
         if (wanted & !((kind == BEFORE) & (*panels).lit)) {
-            light_place(ray, distance, &scatter, &source);
+            light_place(ray, distance, styled, &scatter, &source);
             lit_after = lit_after | (kind == AFTER);
             for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
                 if (!is_wall | (medium == owner)) {

@@ -31,11 +31,12 @@ fn clear_glow() -> Glow {
 
 fn march_nodes(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
+    var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     for (var node = comb.first - 2; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {
-            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &weights));
+            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
         // Go on while the ray still lets light through.
         if (largest(glow.transmittance) < STOP) {
@@ -52,7 +53,12 @@ struct Chunk {
 }
 
 // Light and optical depth of one node.
-fn node_chunk(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> Chunk {
+fn node_chunk(
+    ray: Ray,
+    t: f32,
+    styled: ptr<function, StyledRays>,
+    weights: ptr<function, array<f32, MEDIUM_SLOTS>>,
+) -> Chunk {
     let point = ray_at(ray, t);
     var depth = vec3f(0.0);
     var scatter: array<vec3f, MEDIUM_SLOTS>;
@@ -69,7 +75,7 @@ fn node_chunk(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>
             source[medium] = interior.emission * mass;
         }
     }
-    light_place(ray, t, &scatter, &source);
+    light_place(ray, t, styled, &scatter, &source);
     // Add up what they send.
     var sent = vec3f(0.0);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {

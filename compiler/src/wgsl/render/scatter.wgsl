@@ -6,6 +6,7 @@
 fn light_place(
     ray: Ray,
     t: f32,
+    styled: ptr<function, StyledRays>,
     scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
     source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
 ) {
@@ -13,20 +14,38 @@ fn light_place(
     let count = light_count();
     for (var light = 0u; light < count; light++) {
         let lamp = arriving(light, point);
-        let seen = place_visibility(lamp, point, t, scatter);
+        var seen = place_visibility(lamp, light, styled, ray, t, scatter);
+        if (STYLES && (lamp.style != 0u)) {
+            seen = seen * styled_tint(lamp, light, styled, point);
+        }
         scatter_light(lamp, seen, ray.direction, scatter, source);
     }
 }
 
 // Fraction of a lamp's light that arrives at a place, if a medium needs to know.
-fn place_visibility(lamp: Arriving, point: vec3f, t: f32, scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>) -> vec3f {
+fn place_visibility(
+    lamp: Arriving,
+    light: u32,
+    styled: ptr<function, StyledRays>,
+    ray: Ray,
+    t: f32,
+    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+) -> vec3f {
     var asked = false;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let scatters = any((*scatter)[medium] > vec3f(0.0));
         asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
     }
     if (asked & lamp.shadows) {
-        return visibility(new_ray(point, lamp.direction), lamp.distance, shadow_bias(t), lamp.grid);
+        let toward = new_ray(ray_at(ray, t), lamp.direction);
+        var part = 1.0;
+        if (STYLES && (lamp.style != 0u)) {
+            counted_rays += 1u;
+            part = styled_share(lamp, light, styled, ray, t);
+        } else {
+            part = unblocked(toward, lamp.distance, shadow_bias(t));
+        }
+        return through_media(toward, lamp.distance, part, lamp.grid);
     }
     return vec3f(1.0);
 }

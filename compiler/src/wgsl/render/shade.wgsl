@@ -16,6 +16,8 @@ struct Arriving {
     slope: f32,
     // Word of the light's grid, 0 for none.
     grid: u32,
+    // Word of its style's record, 0 for none.
+    style: u32,
 }
 
 fn light_count() -> u32 {
@@ -36,7 +38,8 @@ fn arriving(light: u32, point: vec3f) -> Arriving {
     let size = vol_frame_word(at + 8u);
     let slope = select(min(size / distance, MAX_SPREAD_TANGENT), size, distant);
     let grid = u32(vol_frame_word(at + 10u));
-    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid);
+    let style = u32(vol_frame_word(at + 11u));
+    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid, style);
 }
 
 // Radiance that leaves a contact towards the eye.

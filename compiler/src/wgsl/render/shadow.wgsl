@@ -1,11 +1,6 @@
 // How much of a light arrives at a point: solids between hide it, media between weaken it.
 // Twin: runtime-cpu/src/render/shadow.rs, which says why.
 
-// Fraction of the light that arrives, per channel.
-fn visibility(ray: Ray, distance: f32, bias: f32, grid: u32) -> vec3f {
-    return through_media(ray, distance, unblocked(ray, distance, bias), grid);
-}
-
 // Fraction of a light with a slope that arrives, per channel.
 fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
     var part = 0.0;

@@ -49,6 +49,8 @@ fn program(objects: usize, media: usize) -> Program {
         objects: vec![object; objects],
         media: vec![medium; media],
         lights: vec![lamp(); 3],
+        styles: Vec::new(),
+        images: Vec::new(),
         camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
         render: Render {
             size: [4, 4],
@@ -119,6 +121,8 @@ fn frame(program: &Program) -> Frame {
             occlusion: 0.0,
         }],
         light_grids: Vec::new(),
+        styles: Vec::new(),
+        styled_lights: Vec::new(),
         background: [13.0, 14.0, 15.0],
         bounds: whole,
         skips: Skips::ALL,
@@ -249,7 +253,7 @@ fn depth_without_a_surface_is_infinite() {
 
 #[test]
 fn loops_have_the_bounds_that_are_told() {
-    let text = INTEGRATOR.join("\n");
+    let text = INTEGRATOR.iter().chain(&STYLED).copied().collect::<Vec<_>>().join("\n");
     for (name, most, _) in LOOP_BOUNDS {
         let spelled = [format!("const {name}: u32 = {most}u;"), format!("const {name}: i32 = {most};")];
         assert!(spelled.iter().any(|line| text.contains(line)), "{name}");

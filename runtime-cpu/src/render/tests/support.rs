@@ -162,6 +162,8 @@ impl World {
             objects: Vec::new(),
             media: Vec::new(),
             lights: Vec::new(),
+            styles: Vec::new(),
+            images: Vec::new(),
             camera: Camera { from: None, at: None, up: [NOWHERE; 3], fov: NOWHERE },
             render: Render {
                 size: [16, 16],
@@ -191,6 +193,8 @@ impl World {
             media: Vec::new(),
             lights: Vec::new(),
             light_grids: Vec::new(),
+            styles: Vec::new(),
+            styled_lights: Vec::new(),
             background: [0.0; 3],
             bounds: Aabb { lo: [-1.0; 3], hi: [1.0; 3] },
             skips: Skips::ALL,

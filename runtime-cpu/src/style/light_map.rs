@@ -1,0 +1,219 @@
+//! The colour of a light across its direction, fitted to strokes painted in some views (Kol et al. 2016, §4.2).
+//!
+//! A pixel of a stroke is a ray; the light that media send along it is linear in the texels of the map. The weights are
+//! those of the integrator itself with a white map, each sample of a medium counted to the texel that it lies in, so
+//! whatever media there are is right. The paper prints weights without `sigma_t dt`; its Eq. 1 has them. The colour asked for
+//! is the stroke's times what the white map gives: strokes say nothing about shading. Where strokes of one view cross the
+//! last one counts.
+
+use super::least_squares::{Fit, Transport, fit as solve};
+use super::{Stage, shadow_map};
+use crate::render::{Batch, Batches, Integrator, Scene, camera_ray};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use vol_compiler::frame::styled::{LightMapTable, stroke_outside};
+use vol_compiler::frame::{Aabb, CameraFrame, Diagnostic, Frame, LightFrame};
+use vol_compiler::program::style::{LightMap, Stroke, Style};
+
+/// Most pixels that are asked for a colour; of more, some are taken.
+const MAX_PIXELS: usize = 1 << 16;
+
+/// Rays that one thread follows at a time.
+const RAYS: usize = 64;
+
+/// A light map and how well it meets its strokes.
+#[derive(Clone, Debug)]
+pub struct FittedMap {
+    /// Name of the style.
+    pub style: String,
+    /// The map.
+    pub table: LightMapTable,
+    /// How it was found; none where it was known before.
+    pub fit: Option<FitReport>,
+}
+
+/// How a light map was found.
+#[derive(Clone, Debug)]
+pub struct FitReport {
+    /// Pixels asked for a colour.
+    pub pixels: usize,
+    /// Steps of the conjugate gradients.
+    pub iterations: usize,
+    /// Whether they came to an end before their number did.
+    pub converged: bool,
+    /// Residual over the colours asked for, both as lengths.
+    pub residual: f64,
+}
+
+/// The light map of a style; `texels` where they are known.
+pub(super) fn fit(
+    stage: &Stage<'_>,
+    style: &Style<f64>,
+    settings: &LightMap<f64>,
+    texels: Option<Vec<[f32; 3]>>,
+) -> Result<FittedMap, Diagnostic> {
+    let light = &stage.frame.lights[style.light];
+    let mut table = across(light, &stage.bounds, settings.size);
+    let count = (settings.size * settings.size) as usize;
+    if let Some(texels) = texels.filter(|texels| texels.len() == count) {
+        table.texels = texels;
+        return Ok(FittedMap { style: style.name.clone(), table, fit: None });
+    }
+    let (mut rows, mut wanted) = (Vec::new(), Vec::new());
+    for (camera, strokes) in views(stage, &settings.strokes) {
+        let pixels = painted(&strokes, stage.job.size, stage.program.render.size)?;
+        let frame = seen_from(stage, style, camera);
+        for (row, color) in weights(stage, &frame, style.light, &table, &pixels).into_iter().zip(&pixels) {
+            let white = row.iter().fold([0.0; 3], |sum, (_, w)| [0, 1, 2].map(|i| sum[i] + f64::from(w[i])));
+            wanted.push([0, 1, 2].map(|i| (white[i] * color.1[i]) as f32));
+            rows.push(row);
+        }
+    }
+    let transport = Transport::new(rows, count);
+    let solution = solve(&transport, &wanted, settings.size as usize, &Fit::default());
+    table.texels = solution.texels;
+    let fit = FitReport {
+        pixels: wanted.len(),
+        iterations: solution.iterations,
+        converged: solution.converged,
+        residual: solution.residual,
+    };
+    Ok(FittedMap { style: style.name.clone(), table, fit: Some(fit) })
+}
+
+/// A map that covers a box, without texels yet.
+fn across(light: &LightFrame, bounds: &Aabb, size: u32) -> LightMapTable {
+    let ([u, v, _], lo, side) = shadow_map::across(light, bounds);
+    let texel = side / f64::from(size);
+    let middle = lo.map(|lo| lo + 0.5 * texel);
+    let origin = [0, 1, 2].map(|i| (u[i] * middle[0] + v[i] * middle[1]) as f32);
+    let axes = [u, v].map(|axis| axis.map(|x| (x / texel) as f32));
+    LightMapTable { origin, axes, size, texels: Vec::new() }
+}
+
+/// The strokes of each view, in their order.
+fn views<'a>(stage: &Stage<'_>, strokes: &'a [Stroke<f64>]) -> Vec<(CameraFrame, Vec<&'a Stroke<f64>>)> {
+    let mut views: Vec<(CameraFrame, Vec<&Stroke<f64>>)> = Vec::new();
+    for stroke in strokes {
+        let camera = match &stroke.view {
+            Some(view) => CameraFrame::of_view(view, stage.job.size),
+            None => stage.frame.camera,
+        };
+        match views.iter_mut().find(|(known, _)| *known == camera) {
+            Some((_, list)) => list.push(stroke),
+            None => views.push((camera, vec![stroke])),
+        }
+    }
+    views
+}
+
+/// A pixel and the colour that it is to have.
+type Painted = ([u32; 2], [f64; 3]);
+
+/// Pixels of a picture that strokes cover, which were painted in one of another size.
+fn painted(
+    strokes: &[&Stroke<f64>],
+    size: [u32; 2],
+    painted_in: [u32; 2],
+) -> Result<Vec<Painted>, Diagnostic> {
+    let mut pixels = BTreeMap::new();
+    let scales = [0, 1].map(|axis| f64::from(size[axis]) / f64::from(painted_in[axis]));
+    for stroke in strokes {
+        let mut touches = false;
+        for_each_pixel(&scaled(stroke, scales), size, |pixel| {
+            touches = true;
+            pixels.insert([pixel[1], pixel[0]], stroke.color);
+        });
+        if !touches {
+            return Err(stroke_outside(stroke.span, painted_in));
+        }
+    }
+    let stride = pixels.len().div_ceil(MAX_PIXELS).max(1);
+    Ok(pixels.into_iter().step_by(stride).map(|([y, x], color)| ([x, y], color)).collect())
+}
+
+/// A stroke in a picture of another size; as wide as the heights say.
+fn scaled(stroke: &Stroke<f64>, [x, y]: [f64; 2]) -> Stroke<f64> {
+    let ends = stroke.ends.map(|end| [x * end[0], y * end[1]]);
+    Stroke { ends, width: y * stroke.width, ..stroke.clone() }
+}
+
+/// Calls with each pixel whose middle is within half the stroke's width of the line between its ends.
+fn for_each_pixel(stroke: &Stroke<f64>, size: [u32; 2], mut call: impl FnMut([u32; 2])) {
+    let [from, to] = stroke.ends;
+    // Narrower than a pixel it would slip through between their middles.
+    let reach = (0.5 * stroke.width).max(std::f64::consts::FRAC_1_SQRT_2);
+    if !(from.iter().chain(&to).all(|x| x.is_finite()) && reach.is_finite()) {
+        return;
+    }
+    let range = |axis: usize| {
+        let last = f64::from(size[axis]);
+        let lo = (from[axis].min(to[axis]) - reach).clamp(0.0, last);
+        let hi = (from[axis].max(to[axis]) + reach).clamp(0.0, last);
+        lo.floor() as u32..hi.ceil() as u32
+    };
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let square = along[0] * along[0] + along[1] * along[1];
+    for y in range(1) {
+        for x in range(0) {
+            let off = [f64::from(x) + 0.5 - from[0], f64::from(y) + 0.5 - from[1]];
+            let share = if square > 0.0 { (off[0] * along[0] + off[1] * along[1]) / square } else { 0.0 };
+            let share = share.clamp(0.0, 1.0);
+            let apart = (off[0] - share * along[0]).hypot(off[1] - share * along[1]);
+            if apart <= reach {
+                call([x, y]);
+            }
+        }
+    }
+}
+
+/// The frame from a camera, its light with the style's occluders and nothing else of the style.
+fn seen_from(stage: &Stage<'_>, style: &Style<f64>, camera: CameraFrame) -> Frame {
+    let mut frame = Frame { camera, ..stage.frame.clone() };
+    let styled = stage.seen_by(&frame).lit_by(style);
+    frame.styled_lights = vec![None; frame.lights.len()];
+    frame.styled_lights[style.light] = Some(Arc::new(styled));
+    frame
+}
+
+/// Weights of texels for the rays through pixels.
+fn weights(
+    stage: &Stage<'_>,
+    frame: &Frame,
+    light: usize,
+    table: &LightMapTable,
+    pixels: &[Painted],
+) -> Vec<Vec<(u32, [f32; 3])>> {
+    let scene = Scene::new(frame, stage.job);
+    let chunks = pixels.par_chunks(RAYS).map(|pixels| {
+        let mut integrator = Integrator::new(&scene, Batch::new(stage.tapes, frame), Batches::DEFAULT);
+        let middle = |([x, y], _): &Painted| camera_ray(&scene, [*x as f32 + 0.5, *y as f32 + 0.5]);
+        let rays: Vec<_> = pixels.iter().map(middle).collect();
+        let places = integrator.light_weights(&rays, light);
+        places.into_iter().map(|places| by_texel(table, places)).collect::<Vec<_>>()
+    });
+    chunks.flatten().collect()
+}
+
+/// Adds up the weights of neighbouring samples in one texel.
+fn by_texel(table: &LightMapTable, places: Vec<([f32; 3], [f32; 3])>) -> Vec<(u32, [f32; 3])> {
+    let mut row: Vec<(u32, [f32; 3])> = Vec::new();
+    for (point, weight) in places {
+        let texel = texel(table, point);
+        match row.last_mut() {
+            Some((last, sum)) if *last == texel => *sum = [0, 1, 2].map(|i| sum[i] + weight[i]),
+            _ => row.push((texel, weight)),
+        }
+    }
+    row
+}
+
+fn texel(table: &LightMapTable, point: [f32; 3]) -> u32 {
+    let last = table.size as f32 - 1.0;
+    let [x, y] = table.axes.map(|axis| {
+        let place: f32 = (0..3).map(|i| (point[i] - table.origin[i]) * axis[i]).sum();
+        place.round().clamp(0.0, last) as u32
+    });
+    y * table.size + x
+}

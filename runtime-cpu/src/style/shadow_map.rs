@@ -1,0 +1,196 @@
+//! Heights of what a distant light meets first, on a square map across it.
+//!
+//! The map covers what media and solids have in common as the light sees them: elsewhere nothing hides it from a
+//! medium, unless solids are to grow. Each texel is one ray of the light through its middle.
+
+use crate::interp::Tapes;
+use crate::real::{Vec3, add, dot, scale, vector};
+use crate::render::{Batch, Batches, Integrator, Ray, Scene, ShadowRay};
+use rayon::prelude::*;
+use vol_compiler::frame::{Aabb, Frame, Job, LightFrame};
+use vol_compiler::wgsl::render::padded;
+
+/// No solid.
+pub(super) const NOTHING: f32 = f32::NEG_INFINITY;
+
+/// A box that reaches further than this has no end.
+const ENDLESS: f32 = 1e5;
+
+/// Rays of the light walk at least this part of a texel at a time: nothing thinner is sure to be met.
+const LEAST_STEP: f32 = 0.05;
+
+/// Sides of the square blocks of texels whose rays walk together.
+const BLOCK: usize = 8;
+
+/// Where the texels of a map are. Coordinates are `(u, v)` across the light and `w` towards it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    /// Unit vectors.
+    pub(super) axes: [Vec3<f64>; 3],
+    /// Corner of the map.
+    pub(super) lo: [f64; 2],
+    /// Side of a texel in scene units.
+    pub(super) texel: f64,
+    /// Texels along each side.
+    pub(super) size: usize,
+    /// Height above all bounded solids and media, and below all media.
+    heights: [f64; 2],
+}
+
+impl Layout {
+    /// The map of a light; none where no solid can hide it from media in `lit`. Solids that may `grow` can hide it from any
+    /// of these.
+    pub(super) fn new(light: &LightFrame, frame: &Frame, lit: &Aabb, size: u32, grow: bool) -> Option<Self> {
+        let axes = axes(light.position.map(f64::from));
+        let solids: Vec<Aabb> = frame.objects.iter().filter_map(|object| padded(&object.bounds)).collect();
+        let lit = bounded(lit, &frame.bounds);
+        let [mut u, mut v, media] = extent(&axes, &lit);
+        let mut top = media[1];
+        let mut shadow = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for solid in &solids {
+            if grow || is_endless(solid) {
+                shadow = [u, v];
+            }
+            if is_endless(solid) {
+                continue;
+            }
+            let [own_u, own_v, own_w] = extent(&axes, solid);
+            // What is below all media hides nothing.
+            if own_w[1] > media[0] && !grow {
+                shadow = [joined(shadow[0], own_u), joined(shadow[1], own_v)];
+            }
+            top = top.max(own_w[1]);
+        }
+        u = [u[0].max(shadow[0][0]), u[1].min(shadow[0][1])];
+        v = [v[0].max(shadow[1][0]), v[1].min(shadow[1][1])];
+        let side = (u[1] - u[0]).max(v[1] - v[0]);
+        if !(u[0] <= u[1] && v[0] <= v[1] && side > 0.0 && side.is_finite()) {
+            return None;
+        }
+        // A texel more on each side, so that a shadow ends on the map.
+        let texel = side / (f64::from(size) - 2.0);
+        let half = 0.5 * texel * f64::from(size);
+        let lo = [0.5 * (u[0] + u[1]) - half, 0.5 * (v[0] + v[1]) - half];
+        let margin = 1e-3 * (top - media[0]).abs() + texel;
+        Some(Self { axes, lo, texel, size: size as usize, heights: [media[0] - margin, top + margin] })
+    }
+
+    /// Coordinates of a point.
+    pub(super) fn seen(&self, point: Vec3<f64>) -> Vec3<f64> {
+        self.axes.map(|axis| dot(point, axis))
+    }
+
+    /// `(u, v)` of a place in texels from the corner.
+    pub(super) fn place(&self, texels: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| self.lo[axis] + texels[axis] * self.texel)
+    }
+
+    /// Index of the texel at `(u, v)`.
+    pub(super) fn texel_at(&self, place: [f64; 2]) -> Option<usize> {
+        let [x, y] = [0, 1].map(|axis| ((place[axis] - self.lo[axis]) / self.texel).floor());
+        let size = self.size as f64;
+        let inside = (0.0..size).contains(&x) && (0.0..size).contains(&y);
+        inside.then(|| y as usize * self.size + x as usize)
+    }
+
+    /// Heights `w` of the solids of a frame, texel by texel, `u` fastest; [`NOTHING`] where there are none.
+    pub(super) fn trace(&self, tapes: &Tapes, frame: &Frame, job: &Job) -> Vec<f32> {
+        let scene = Scene::new(frame, job);
+        let endless =
+            frame.objects.iter().filter_map(|object| padded(&object.bounds)).any(|b| is_endless(&b));
+        let mut heights = vec![NOTHING; self.size * self.size];
+        heights.par_chunks_mut(BLOCK * self.size).enumerate().for_each(|(strip, heights)| {
+            let mut integrator = Integrator::new(&scene, Batch::new(tapes, frame), Batches::DEFAULT);
+            for left in (0..self.size).step_by(BLOCK) {
+                self.trace_block(&mut integrator, strip * BLOCK, left, endless, heights);
+            }
+        });
+        heights
+    }
+
+    fn trace_block(
+        &self,
+        integrator: &mut Integrator<'_, Batch<'_>>,
+        top: usize,
+        left: usize,
+        endless: bool,
+        heights: &mut [f32],
+    ) {
+        let rows = heights.len() / self.size;
+        let columns = BLOCK.min(self.size - left);
+        let texels = (0..rows).flat_map(|row| (left..left + columns).map(move |column| [column, row]));
+        let texels: Vec<_> = texels.collect();
+        let [bottom, start] = self.heights;
+        let [u, v, w] = self.axes;
+        let origin = |&[column, row]: &[usize; 2]| {
+            let [x, y] = self.place([column as f64 + 0.5, (top + row) as f64 + 0.5]);
+            add(add(scale(u, x), scale(v, y)), scale(w, start))
+        };
+        let narrow = |v: Vec3<f64>| v.map(|x| x as f32);
+        let rays: Vec<_> =
+            texels.iter().map(|texel| Ray::new(narrow(origin(texel)), narrow(scale(w, -1.0)))).collect();
+        let step = LEAST_STEP * self.texel as f32;
+        let length = (start - bottom) as f32;
+        let entries = integrator.entries(&rays, length, step);
+        // Solids without end may lie above everything that has one.
+        let hidden = if endless {
+            let up = |ray: &Ray<f32>| ShadowRay::new(Ray::new(ray.origin, narrow(w)), f32::MAX, 4.0 * step);
+            integrator.blocked(&rays.iter().map(up).collect::<Vec<_>>())
+        } else {
+            vec![false; rays.len()]
+        };
+        for (([column, row], entry), hidden) in texels.into_iter().zip(entries).zip(hidden) {
+            let height = if hidden { Some(start) } else { entry.map(|t| start - f64::from(t)) };
+            heights[row * self.size + column] = height.map_or(NOTHING, |height| height as f32);
+        }
+    }
+}
+
+/// Unit vectors across a light and towards it, and the corner and side of the square across it that a box fills.
+pub(super) fn across(light: &LightFrame, bounds: &Aabb) -> ([Vec3<f64>; 3], [f64; 2], f64) {
+    let axes = axes(light.position.map(f64::from));
+    let [u, v, _] = extent(&axes, bounds);
+    let side = (u[1] - u[0]).max(v[1] - v[0]).max(f64::from(f32::MIN_POSITIVE));
+    let lo = [u, v].map(|[lo, hi]| 0.5 * (lo + hi) - 0.5 * side);
+    (axes, lo, side)
+}
+
+/// Unit vectors across a direction and along it: `v` is up in the picture of a map, as far as up is across.
+fn axes(toward: Vec3<f64>) -> [Vec3<f64>; 3] {
+    let w = unit(toward);
+    let up = if w[1].abs() < 0.9 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, -1.0] };
+    let u = unit(cross(up, w));
+    // As the shaders read them.
+    [u, cross(w, u), w].map(|axis| axis.map(|x| f64::from(x as f32)))
+}
+
+fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    scale(v, 1.0 / dot(v, v).sqrt())
+}
+
+fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn is_endless(bounds: &Aabb) -> bool {
+    bounds.lo.iter().chain(&bounds.hi).any(|x| x.abs() > ENDLESS)
+}
+
+/// A box that has an end: that of the whole scene where media have none.
+pub(super) fn bounded(lit: &Aabb, scene: &Aabb) -> Aabb {
+    if is_endless(lit) && scene.lo.iter().zip(&scene.hi).all(|(lo, hi)| lo <= hi) { *scene } else { *lit }
+}
+
+fn joined([lo, hi]: [f64; 2], [other_lo, other_hi]: [f64; 2]) -> [f64; 2] {
+    [lo.min(other_lo), hi.max(other_hi)]
+}
+
+/// Smallest and largest coordinates of a box.
+fn extent(axes: &[Vec3<f64>; 3], bounds: &Aabb) -> [[f64; 2]; 3] {
+    let (lo, hi): (Vec3<f64>, Vec3<f64>) = (vector(bounds.lo), vector(bounds.hi));
+    axes.map(|axis| {
+        let ends = [0, 1, 2].map(|i| [axis[i] * lo[i], axis[i] * hi[i]]);
+        let sum = |pick: fn(f64, f64) -> f64| ends.iter().map(|[a, b]| pick(*a, *b)).sum();
+        [sum(f64::min), sum(f64::max)]
+    })
+}

@@ -136,6 +136,10 @@ pub(crate) struct Render {
     /// its style before the extension
     #[arg(long, value_name = "FILE")]
     pub(crate) light_map: Option<PathBuf>,
+    /// Write the shadow map that a style has made to this `.exr` or `.png`, what is near the light white; of several each
+    /// with the name of its style before the extension
+    #[arg(long, value_name = "FILE")]
+    pub(crate) shadow_map: Option<PathBuf>,
     /// Write what was done and how long it took to this JSON file
     #[arg(long, value_name = "FILE")]
     pub(crate) stats: Option<PathBuf>,

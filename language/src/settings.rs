@@ -138,7 +138,7 @@ impl ChoiceKind {
             Self::LightMap => vec![word(
                 "paint",
                 vec![
-                    key("size", Type::Int, "width and height in texels; default 512"),
+                    key("size", Type::Int, "width and height in texels, 4 to 1024; default 512"),
                     required("strokes", Type::list(Type::Choice(Self::Stroke)), "what is painted"),
                 ],
                 "fitted to strokes by least squares",

@@ -51,6 +51,8 @@ pub(crate) trait Real:
     fn decay(self) -> Self;
     /// [`Real::decay`] of many numbers.
     fn decays(x: &[Self], decays: &mut [Self]);
+    /// How many of many numbers are larger.
+    fn larger(self, others: &[f32]) -> u32;
     /// (1 - exp(-x)) / x for x >= 0, 1 at 0: the mean transmittance over an optical depth x, of which exp(-x) is
     /// known.
     fn mean_decay(self, decay: Self) -> Self;
@@ -123,6 +125,10 @@ impl Real for f32 {
         fun::exp2(self * -std::f32::consts::LOG2_E)
     }
 
+    fn larger(self, others: &[f32]) -> u32 {
+        Isa::best().run::<Larger>((self, others))
+    }
+
     fn decays(x: &[Self], decays: &mut [Self]) {
         Isa::best().run::<Decays>((x, decays));
     }
@@ -157,6 +163,12 @@ kernel! {
         for (decay, x) in decays.iter_mut().zip(x) {
             *decay = x.decay();
         }
+    }
+}
+
+kernel! {
+    fn Larger<'a>((least, others): (f32, &'a [f32])) -> u32 {
+        others.iter().map(|&other| u32::from(other > least)).sum()
     }
 }
 
@@ -206,6 +218,10 @@ impl Real for f64 {
 
     fn decay(self) -> Self {
         (-self).exp()
+    }
+
+    fn larger(self, others: &[f32]) -> u32 {
+        others.iter().map(|&other| u32::from(Self::from(other) > self)).sum()
     }
 
     fn decays(x: &[Self], decays: &mut [Self]) {

@@ -76,7 +76,7 @@ pub(crate) use camera::{Ray, camera_ray};
 pub(crate) use fields::Batch;
 pub(crate) use scene::{Batches, Integrator, Scene};
 pub(crate) use shadow::ShadowRay;
-pub(crate) use styled::NO_DEPTH;
+pub(crate) use styled::{NO_DEPTH, transfer_color};
 
 use crate::interp::Tapes;
 use fields::Reference;

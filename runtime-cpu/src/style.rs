@@ -18,9 +18,11 @@ mod morphology;
 mod occluders;
 mod shadow_map;
 mod slices;
+mod stages;
 mod transfer;
 
-pub use light_map::FittedMap;
+pub use light_map::{FitReport, FittedMap};
+pub use stages::{StageTimes, closing_times, heterogeneity, stage_times};
 pub use transfer::Picture;
 
 use crate::interp::Tapes;
@@ -28,7 +30,7 @@ use crate::render::{Batch, Batches, Integrator, NO_DEPTH, Ray, Scene};
 use shadow_map::{Layout, bounded};
 use std::sync::Arc;
 use vol_compiler::frame::styled::{HeterogeneityTable, Occluders, StyledLight, TransferTable};
-use vol_compiler::frame::{Aabb, Diagnostic, Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Aabb, Diagnostic, Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::style::{OperatorKind, Shafts, Style};
 use vol_compiler::program::{Lighting, Program};
 use vol_compiler::wgsl::render::padded;
@@ -94,6 +96,23 @@ pub fn prepare(
     Ok(prepared)
 }
 
+/// The shadow maps of a frame's styles after all operators, by the names of the styles: what is nearest to the light is
+/// white, the lowest solid grey, and where there is none it is black. Styles without a map are left out.
+#[must_use]
+pub fn shadow_maps(program: &Program, frame: &Frame, size: [u32; 2]) -> Vec<(String, Image)> {
+    let Some(lit) = lit_bounds(frame) else { return Vec::new() };
+    let (quadrature, sampling) = (Quadrature::Midpoint, Sampling::CENTRE);
+    let job = Job { size, step: 1.0, shadow_step: 1.0, quadrature, sampling };
+    let tapes = Tapes::of_frame(program, frame);
+    let stage = Stage { program, frame, job: &job, tapes: &tapes, bounds: bounded(&lit, &frame.bounds) };
+    let mapped = frame.styles.iter().filter(|style| style.shafts == Shafts::Mapped);
+    let image = |style: &Style<f64>| {
+        let layout = stage.layout(style)?;
+        Some((style.name.clone(), layout.image(&occluders::heights(&stage, style, layout))))
+    };
+    mapped.filter_map(image).collect()
+}
+
 /// What all parts of a style are prepared from.
 struct Stage<'a> {
     program: &'a Program,
@@ -113,13 +132,8 @@ impl Stage<'_> {
         } else if style.shafts == Shafts::Exact {
             Occluders::Marched
         } else {
-            let grow =
-                style.operators.iter().any(|operator| matches!(operator.kind, OperatorKind::Extrude(_)));
-            let layout = Layout::new(light, self.frame, &self.bounds, style.shadow_map, grow);
-            layout.map_or(Occluders::None, |layout| {
-                let Self { program, frame, job, tapes, .. } = self;
-                Occluders::Slices(occluders::slices(program, frame, job, tapes, style, layout))
-            })
+            let layout = self.layout(style);
+            layout.map_or(Occluders::None, |layout| Occluders::Slices(occluders::slices(self, style, layout)))
         };
         StyledLight {
             toward: light.position,
@@ -129,6 +143,12 @@ impl Stage<'_> {
             light_map: None,
             heterogeneity: None,
         }
+    }
+
+    /// Where the shadow map of a style is.
+    fn layout(&self, style: &Style<f64>) -> Option<Layout> {
+        let grow = style.operators.iter().any(|operator| matches!(operator.kind, OperatorKind::Extrude(_)));
+        Layout::new(&self.frame.lights[style.light], self.frame, &self.bounds, style.shadow_map, grow)
     }
 
     /// The same with another camera.

@@ -23,6 +23,11 @@ pub(super) fn run(arguments: &cli::Compile) -> Result<(), Failure> {
     }
     let (language, form) = (language(arguments.target), form(arguments));
     let prepared = Prepared::new(&arguments.scene)?;
+    if !prepared.session.program.styles.is_empty() {
+        super::print_line(
+            "note: tables of styles are not part of a shader; it draws lights as they are without",
+        );
+    }
     let (frame, job) = moment(&prepared, arguments)?;
     let session = &prepared.session;
     let line = |span: Span| Some(super::line_of(&session.sources, span));

@@ -9,10 +9,9 @@ use vol::output::{self, Format, atomic};
 use vol::session::Moment;
 use vol::styles;
 use vol_compiler::dropped;
-use vol_compiler::frame::{Counts, Frame, Inputs, Sampling};
+use vol_compiler::frame::{Counts, Frame, Image, Inputs, Sampling};
 use vol_compiler::skip::Skip;
 use vol_compiler::wgsl::render::WORKGROUP;
-use vol_runtime_cpu::style::FittedMap;
 use vol_runtime_cpu::{FilledGrids, Method};
 
 use super::memory::{self, Memory};
@@ -76,7 +75,7 @@ fn check_outputs(arguments: &cli::Render) -> Result<(), Failure> {
         output = output::frame_path(&output, first);
     }
     atomic::probe(&output)?;
-    if let Some(path) = &arguments.light_map {
+    for path in [&arguments.light_map, &arguments.shadow_map].into_iter().flatten() {
         Format::of(path)?;
         atomic::probe(path)?;
     }
@@ -209,15 +208,34 @@ impl Pictures<'_> {
             return Ok(());
         }
         let mut frame = frame;
-        let maps = timed(&mut self.stats.milliseconds.styles, || session.prepare_styles(&mut frame, size))?;
-        if let Some(path) = &self.arguments.light_map {
-            write_light_maps(&maps, path)?;
-        }
-        self.stats.light_maps = maps.iter().map(LightMap::new).collect();
+        self.style(&mut frame)?;
         let rendered = self.compute(frame, sampling)?;
         timed(&mut self.stats.milliseconds.write, || write(&rendered, path))?;
         self.stats.error = self.reference.map(|reference| reference.error_of(&rendered.image));
         self.last = inputs.map(|inputs| Last { inputs, sampling, rendered });
+        Ok(())
+    }
+
+    /// Prepares the styles of a frame and writes the maps that are asked for.
+    fn style(&mut self, frame: &mut Frame) -> Result<(), Failure> {
+        if frame.styles.is_empty() {
+            return Ok(());
+        }
+        let (session, size) = (&self.prepared.session, self.stats.size);
+        if self.arguments.integrator != cli::Integrator::Comb {
+            let text =
+                format!("the integrator `{}` knows no styles", method::name(self.arguments.integrator));
+            return Err(Failure::usage(text).with_help("take `--integrator comb`, or switch the styles off"));
+        }
+        let maps = timed(&mut self.stats.milliseconds.styles, || session.prepare_styles(frame, size))?;
+        if let Some(path) = &self.arguments.light_map {
+            let images = maps.iter().map(|map| (map.style.clone(), styles::as_image(map)));
+            write_maps(images.collect(), path)?;
+        }
+        if let Some(path) = &self.arguments.shadow_map {
+            write_maps(vol_runtime_cpu::style::shadow_maps(&session.program, frame, size), path)?;
+        }
+        self.stats.light_maps = maps.iter().map(LightMap::new).collect();
         Ok(())
     }
 
@@ -264,14 +282,12 @@ fn write(rendered: &Rendered, path: &Path) -> Result<(), Failure> {
     output::write_picture(&rendered.image, rendered.costs.as_deref(), path)
 }
 
-/// Writes light maps as pictures; of several each with the name of its style.
-fn write_light_maps(maps: &[FittedMap], path: &Path) -> Result<(), Failure> {
-    for map in maps {
-        let named = match maps {
-            [_] => path.to_owned(),
-            _ => output::with_suffix(path, &map.style),
-        };
-        output::write_picture(&styles::as_image(map), None, &named)?;
+/// Writes the maps of styles as pictures; of several each with the name of its style.
+fn write_maps(maps: Vec<(String, Image)>, path: &Path) -> Result<(), Failure> {
+    let single = maps.len() == 1;
+    for (style, image) in maps {
+        let named = if single { path.to_owned() } else { output::with_suffix(path, &style) };
+        output::write_picture(&image, None, &named)?;
     }
     Ok(())
 }

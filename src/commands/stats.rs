@@ -141,6 +141,8 @@ pub(super) struct LightMap {
     pub(super) converged: Option<bool>,
     /// Difference to the colours asked for, over these.
     pub(super) residual: Option<f64>,
+    /// The same of the white map and after each iteration.
+    pub(super) residuals: Vec<f64>,
 }
 
 impl LightMap {
@@ -153,6 +155,7 @@ impl LightMap {
             iterations: fit.map(|fit| fit.iterations),
             converged: fit.map(|fit| fit.converged),
             residual: fit.map(|fit| fit.residual),
+            residuals: fit.map_or_else(Vec::new, |fit| fit.history.clone()),
         }
     }
 }

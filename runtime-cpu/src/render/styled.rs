@@ -31,8 +31,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use vol_compiler::frame::Aabb;
 use vol_compiler::frame::styled::{
-    HeterogeneityTable, LightMapTable, Means, Occluders, Slices, StyledLight, TRANSFER_SIZE, TransferTable,
+    LightMapTable, Means, Occluders, Slices, StyledLight, TRANSFER_SIZE, TransferTable,
 };
+use vol_compiler::ir::FunctionId;
 
 /// Least sine of the angle between a ray and the light: nearer to it a ray stays in one texel anyway.
 const LEAST_SINE: f32 = 1e-6;
@@ -81,16 +82,8 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Vec<StyledRay<F::Real>> {
         let mut styled: Vec<_> =
             rays.iter().zip(ends).map(|(ray, &end)| styled_ray(light, ray, end)).collect();
-        // The stretches over which rays are averaged.
-        let spans: Vec<_> =
-            rays.iter().zip(ends).map(|(ray, &end)| stretch(&light.bounds, ray, end)).collect();
         if let Some(transfer) = &light.transfer {
-            let cells = spans.iter().enumerate().filter(|(_, [from, to])| from < to);
-            let cells: Vec<_> = cells.map(|(ray, &[from, to])| Cell { ray, from, to }).collect();
-            let mut visible = vec![F::Real::ONE; rays.len()];
-            for (cell, share) in cells.iter().zip(self.lit_shares(light, rays, &styled, &cells)) {
-                visible[cell.ray] = share;
-            }
+            let visible = self.average_visibility(light, rays, ends);
             for (index, styled) in styled.iter_mut().enumerate() {
                 let depth = self.first_depth(&rays[index], ends[index]);
                 styled.tint = transfer_color(transfer, visible[index], depth);
@@ -99,7 +92,7 @@ impl<F: Fields> Integrator<'_, F> {
         if let Some(heterogeneity) = &light.heterogeneity {
             let means = match &heterogeneity.means {
                 Some(means) => self.known_means(means, rays, ends),
-                None => self.ray_means(heterogeneity, rays, &spans),
+                None => self.means_to(heterogeneity.field, heterogeneity.steps, &light.bounds, rays, ends),
             };
             for (styled, mean) in styled.iter_mut().zip(means) {
                 styled.tint = scale(styled.tint, mean);
@@ -112,30 +105,56 @@ impl<F: Fields> Integrator<'_, F> {
     pub(crate) fn shaft_of(&mut self, light: &StyledLight, ray: &Ray<F::Real>) -> [F::Real; 2] {
         let rays = [*ray];
         let ends = self.first_surfaces(&rays);
-        let styled = [styled_ray(light, ray, ends[0])];
-        let [from, to] = stretch(&light.bounds, ray, ends[0]);
-        let cells = [Cell { ray: 0, from, to }];
-        let visible =
-            if from < to { self.lit_shares(light, &rays, &styled, &cells)[0] } else { F::Real::ONE };
-        [visible, self.first_depth(ray, ends[0])]
+        [self.average_visibility(light, &rays, &ends)[0], self.first_depth(ray, ends[0])]
+    }
+
+    /// Average visibility of rays that end somewhere; 1 for those that meet no medium.
+    pub(crate) fn average_visibility(
+        &mut self,
+        light: &StyledLight,
+        rays: &[Ray<F::Real>],
+        ends: &[F::Real],
+    ) -> Vec<F::Real> {
+        let styled: Vec<_> = rays.iter().zip(ends).map(|(ray, &end)| styled_ray(light, ray, end)).collect();
+        let mut visible = vec![F::Real::ONE; rays.len()];
+        let spans = rays.iter().zip(ends).map(|(ray, &end)| stretch(&light.bounds, ray, end));
+        let cells = spans.enumerate().filter(|(_, [from, to])| from < to);
+        let cells: Vec<_> = cells.map(|(ray, [from, to])| Cell { ray, from, to }).collect();
+        for (cell, share) in cells.iter().zip(self.lit_shares(light, rays, &styled, &cells)) {
+            visible[cell.ray] = share;
+        }
+        visible
+    }
+
+    /// Mean heterogeneity in a box of rays that end somewhere.
+    pub(crate) fn means_to(
+        &mut self,
+        field: FunctionId,
+        steps: u32,
+        bounds: &Aabb,
+        rays: &[Ray<F::Real>],
+        ends: &[F::Real],
+    ) -> Vec<F::Real> {
+        let spans: Vec<_> = rays.iter().zip(ends).map(|(ray, &end)| stretch(bounds, ray, end)).collect();
+        self.ray_means(field, steps, rays, &spans)
     }
 
     /// Mean heterogeneity in a box and depth of the first surface of each ray.
     pub(crate) fn means_and_depths(
         &mut self,
-        table: &HeterogeneityTable,
+        field: FunctionId,
+        steps: u32,
         bounds: &Aabb,
         rays: &[Ray<F::Real>],
     ) -> Vec<[F::Real; 2]> {
         let ends = self.first_surfaces(rays);
-        let spans: Vec<_> = rays.iter().zip(&ends).map(|(ray, &end)| stretch(bounds, ray, end)).collect();
-        let means = self.ray_means(table, rays, &spans);
+        let means = self.means_to(field, steps, bounds, rays, &ends);
         let depths = rays.iter().zip(&ends).map(|(ray, &end)| self.first_depth(ray, end));
         means.into_iter().zip(depths).map(|(mean, depth)| [mean, depth]).collect()
     }
 
     /// Distance of the first surface on each ray, [`FAR`] where there is none.
-    fn first_surfaces(&mut self, rays: &[Ray<F::Real>]) -> Vec<F::Real> {
+    pub(crate) fn first_surfaces(&mut self, rays: &[Ray<F::Real>]) -> Vec<F::Real> {
         let mut ends = vec![F::Real::from_f32(FAR); rays.len()];
         for contact in self.trace(rays) {
             ends[contact.ray] = contact.t;
@@ -183,13 +202,14 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Mean of the heterogeneity over a stretch of each ray, at the middles of equal parts.
-    pub(super) fn ray_means(
+    fn ray_means(
         &mut self,
-        heterogeneity: &HeterogeneityTable,
+        field: FunctionId,
+        steps: u32,
         rays: &[Ray<F::Real>],
         spans: &[[F::Real; 2]],
     ) -> Vec<F::Real> {
-        let steps = heterogeneity.steps as usize;
+        let steps = steps as usize;
         let count = F::Real::from_index(steps as i32);
         let mut means = Vec::with_capacity(rays.len());
         for (ray, &[from, to]) in rays.iter().zip(spans) {
@@ -200,7 +220,7 @@ impl<F: Fields> Integrator<'_, F> {
             let step = (to - from) / count;
             let place = |i: usize| from + (F::Real::from_index(i as i32) + F::Real::from_f32(0.5)) * step;
             let points: Points<_> = (0..steps).map(|i| ray.at(place(i))).collect();
-            let [values] = self.fields.sample(heterogeneity.field, &points);
+            let [values] = self.fields.sample(field, &points);
             let sum = values.into_iter().fold(F::Real::ZERO, |sum, value| sum + value);
             means.push(sum / count);
         }
@@ -208,7 +228,7 @@ impl<F: Fields> Integrator<'_, F> {
     }
 
     /// Means looked up between pixels where they are known, by those at similar depths.
-    fn known_means(&self, means: &Means, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<F::Real> {
+    pub(crate) fn known_means(&self, means: &Means, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<F::Real> {
         let mean = |(ray, &end): (&Ray<F::Real>, &F::Real)| {
             let depth = self.first_depth(ray, end);
             known_mean(means, pixel(self.scene, ray), depth)
@@ -335,21 +355,22 @@ pub(super) fn lit_share<R: Real>(slices: &Slices, ray: &StyledRay<R>, from: R, t
         return R::ONE;
     }
     let (left, right) = (begin.floor().to_index(), end.floor().to_index().min(columns - 1));
-    let mut dark = R::ZERO;
-    for texel in left..=right {
+    // The part of a texel at an end of the stretch that is dark.
+    let part = |texel: i32| {
         let slope = R::from_f32(slices.slopes[first + texel as usize]);
         let low = begin.max(R::from_index(texel));
         let high = end.min(R::from_index(texel + 1));
-        let holds_eye = (texel == 0) & (slices.first_distance == 0.0);
-        let hidden = if holds_eye {
+        if (texel == 0) & (slices.first_distance == 0.0) {
             hidden_at_the_eye(slope, ray.slope, low, high)
         } else if slope > ray.slope {
             high - low
         } else {
             R::ZERO
-        };
-        dark = dark + hidden;
-    }
+        }
+    };
+    let parts = part(left) + if right > left { part(right) } else { R::ZERO };
+    let between = &slices.slopes[first..][(left + 1) as usize..right.max(left + 1) as usize];
+    let dark = R::from_index(ray.slope.larger(between) as i32) + parts;
     (R::ONE - dark / width).max(R::ZERO).min(R::ONE)
 }
 
@@ -371,7 +392,7 @@ fn hidden_at_the_eye<R: Real>(slope: R, own: R, low: R, high: R) -> R {
 }
 
 /// Colour for an average visibility and a depth along the viewing axis.
-fn transfer_color<R: Real>(table: &TransferTable, visible: R, depth: R) -> Vec3<R> {
+pub(crate) fn transfer_color<R: Real>(table: &TransferTable, visible: R, depth: R) -> Vec3<R> {
     let along = (depth - R::from_f32(table.near)) * R::from_f32(table.per_unit);
     let last = R::from_index(TRANSFER_SIZE as i32 - 1);
     let place = [visible, along].map(|share| share.max(R::ZERO).min(R::ONE) * last);

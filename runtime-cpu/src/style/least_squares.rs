@@ -150,6 +150,7 @@ impl Transport {
     }
 
     /// `T x`: radiance at the pixels from the colours of the texels.
+    #[cfg(test)]
     pub(crate) fn forward(&self, x: &[Rgb]) -> Vec<Rgb> {
         let mut sums = vec![[0.0; 3]; self.pixels];
         self.to_pixels(x, &mut sums);
@@ -157,6 +158,7 @@ impl Transport {
     }
 
     /// `T' y`: sums over the pixels that the light of each texel comes to.
+    #[cfg(test)]
     pub(crate) fn transposed(&self, y: &[Rgb]) -> Vec<Rgb> {
         let mut sums = vec![[0.0; 3]; self.texels];
         self.to_texels(y, &mut sums);
@@ -164,6 +166,7 @@ impl Transport {
     }
 
     /// With the weights as they were given.
+    #[cfg(test)]
     fn in_scene(&self, mut sums: Vec<Rgb>) -> Vec<Rgb> {
         let scale = |sum: Rgb| from_fn(|channel| (f64::from(sum[channel]) * self.unit[channel]) as f32);
         sums.par_iter_mut().for_each(|sum| *sum = scale(*sum));
@@ -419,8 +422,8 @@ struct Map {
     residuals: Vec<Rgb>,
 }
 
-/// Largest difference of equal radiances, relative to the largest of all, that rounding of sums may make.
-const ROUNDING: f64 = 1e-6;
+/// Differences from what a white map gives, relative to the largest of that, which are rounding of sums along rays.
+const ROUNDING: f64 = 1e-5;
 
 impl<'a> Problem<'a> {
     fn new(transport: &'a Transport, target: &[Rgb], size: usize, settings: &Fit) -> Self {
@@ -492,8 +495,7 @@ impl<'a> Problem<'a> {
             );
             turn(&mut directions, keep, &slopes);
             gradient = next;
-            let goes_on = |channel: usize| gradient[channel] > settings.tolerance * first[channel];
-            open = from_fn(|channel| open[channel] && goes_on(channel));
+            open = from_fn(|channel| gradient[channel] > settings.tolerance * first[channel]);
             history.push(progress(gradient, map));
         }
         (history, !open.contains(&true))

@@ -44,6 +44,8 @@ pub struct FitReport {
     pub converged: bool,
     /// Residual over the colours asked for, both as lengths.
     pub residual: f64,
+    /// The same of the white map and after each step.
+    pub history: Vec<f64>,
 }
 
 /// The light map of a style; `texels` where they are known.
@@ -78,6 +80,7 @@ pub(super) fn fit(
         iterations: solution.iterations,
         converged: solution.converged,
         residual: solution.residual,
+        history: solution.history.iter().map(|progress| progress.residual).collect(),
     };
     Ok(FittedMap { style: style.name.clone(), table, fit: Some(fit) })
 }

@@ -12,6 +12,7 @@
 //! * source: algorithms.md §6.1; E. R. Urbach, M. H. F. Wilkinson, "Efficient 2-D Grayscale Morphological
 //!   Transformations With Arbitrary Flat Structuring Elements", IEEE TIP 2008, for the union of chords
 
+use crate::isa::{Isa, kernel};
 use rayon::prelude::*;
 
 /// Texels that are computed together: a whole number of vectors of any instruction set, and enough of them to hide
@@ -79,11 +80,18 @@ impl Disk {
 
 /// Dilates a map; what comes out has the other sign.
 fn dilate_negated(map: &[f32], width: usize, disk: &Disk, out: &mut [f32]) {
+    let isa = Isa::best();
     let fill = |strip: &mut Strip, (index, out): (usize, &mut [f32])| {
         strip.read(map, index * ROWS);
-        strip.dilate_negated(out);
+        isa.run::<DilateStrip>((strip, out));
     };
     out.par_chunks_mut(ROWS * width).enumerate().for_each_init(|| Strip::new(disk, width), fill);
+}
+
+kernel! {
+    fn DilateStrip<'a>((strip, out): (&'a mut Strip, &'a mut [f32])) {
+        strip.dilate_negated(out);
+    }
 }
 
 /// Rows of a map with all that disks around their texels reach, and the maxima of columns in them.

@@ -4,40 +4,39 @@
 //! puts the layers with any of them together and changes that; what it has put together stays so. At the end the
 //! highest of all layers counts. Surfaces keep the shadows of the solids themselves.
 
+use super::Stage;
 use super::holes::holes;
 use super::morphology::{close_disk, dilate_row, erode_row};
 use super::shadow_map::{Layout, NOTHING};
 use super::slices::Fan;
-use crate::interp::Tapes;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use vol_compiler::frame::Frame;
 use vol_compiler::frame::styled::Slices;
-use vol_compiler::frame::{Frame, Job};
-use vol_compiler::program::Program;
 use vol_compiler::program::style::{Operator, OperatorKind, Style};
 
 /// Largest kernel in texels.
 const MAX_KERNEL: f64 = 8192.0;
 
+/// The heights that a style makes of its light's shadow map, texel by texel, `u` fastest.
+pub(super) fn heights(stage: &Stage<'_>, style: &Style<f64>, layout: Layout) -> Vec<f32> {
+    let fan = Fan::new(layout, stage.frame.camera.origin.map(f64::from));
+    joined(changed(stage, style, &layout, &fan), |layer| layer.into_map(&fan))
+}
+
 /// The slices of a style's light as the eye sees them.
-pub(super) fn slices(
-    program: &Program,
-    frame: &Frame,
-    job: &Job,
-    tapes: &Tapes,
-    style: &Style<f64>,
-    layout: Layout,
-) -> Slices {
-    let fan = Fan::new(layout, frame.camera.origin.map(f64::from));
-    let mut layers = layers(program, frame, job, tapes, style, &layout);
+pub(super) fn slices(stage: &Stage<'_>, style: &Style<f64>, layout: Layout) -> Slices {
+    let fan = Fan::new(layout, stage.frame.camera.origin.map(f64::from));
+    fan.table(joined(changed(stage, style, &layout, &fan), |layer| layer.into_slopes(&fan)))
+}
+
+/// The layers of a shadow map after all operators.
+fn changed(stage: &Stage<'_>, style: &Style<f64>, layout: &Layout, fan: &Fan) -> Vec<Layer> {
+    let mut layers = layers(stage, style, layout);
     for operator in &style.operators {
-        operate(operator, &mut layers, &layout, &fan);
+        operate(operator, &mut layers, layout, fan);
     }
-    let slopes = layers.into_iter().map(|layer| layer.into_slopes(&fan)).reduce(|mut all, slopes| {
-        raise(&mut all, &slopes);
-        all
-    });
-    fan.table(slopes.unwrap_or_else(|| fan.cut(&vec![NOTHING; layout.size * layout.size])))
+    layers
 }
 
 /// Some objects and how high they are.
@@ -69,14 +68,8 @@ impl Layer {
 }
 
 /// One layer for all objects that the same operators are for.
-fn layers(
-    program: &Program,
-    frame: &Frame,
-    job: &Job,
-    tapes: &Tapes,
-    style: &Style<f64>,
-    layout: &Layout,
-) -> Vec<Layer> {
+fn layers(stage: &Stage<'_>, style: &Style<f64>, layout: &Layout) -> Vec<Layer> {
+    let Stage { program, frame, job, tapes, .. } = *stage;
     let mut groups: BTreeMap<Vec<bool>, Vec<usize>> = BTreeMap::new();
     for (which, object) in frame.objects.iter().enumerate() {
         let name = &program.objects[object.index].name;

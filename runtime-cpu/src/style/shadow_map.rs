@@ -7,7 +7,7 @@ use crate::interp::Tapes;
 use crate::real::{Vec3, add, dot, scale, vector};
 use crate::render::{Batch, Batches, Integrator, Ray, Scene, ShadowRay};
 use rayon::prelude::*;
-use vol_compiler::frame::{Aabb, Frame, Job, LightFrame};
+use vol_compiler::frame::{Aabb, Frame, Image, Job, LightFrame, Pixel};
 use vol_compiler::wgsl::render::padded;
 
 /// No solid.
@@ -106,6 +106,20 @@ impl Layout {
             }
         });
         heights
+    }
+
+    /// Heights as a picture, the lowest of them dark.
+    pub(super) fn image(&self, heights: &[f32]) -> Image {
+        let there = heights.iter().copied().filter(|height| *height > NOTHING);
+        let (lo, hi) = there.fold((f32::INFINITY, NOTHING), |(lo, hi), h| (lo.min(h), hi.max(h)));
+        let length = if hi > lo { hi - lo } else { 1.0 };
+        let level = |height: f32| if height > NOTHING { 0.1 + 0.9 * (height - lo) / length } else { 0.0 };
+        let pixel =
+            |&height: &f32| Pixel { color: [level(height); 3], depth: f32::INFINITY, ..Pixel::default() };
+        // Up is where v is largest.
+        let rows = heights.chunks(self.size).rev();
+        let side = self.size as u32;
+        Image { width: side, height: side, pixels: rows.flatten().map(pixel).collect() }
     }
 
     fn trace_block(

@@ -114,7 +114,7 @@ impl Generator<'_> {
             "make_holes: { frequency: 0.1, octaves: 2, threshold: sin(time), noise: printed }",
         ];
         let of_all = [
-            "transfer: [gradient((0, 0), #ffb347, (1, 0), #26004d), image(\"a.png\", blend: alpha(0.5))]",
+            "transfer: [gradient((0, 0), #ffb347, (1, 0), #26004d), image(\"examples/styles/mood.png\", blend: alpha(0.5))]",
             "transfer: keys(time, 0: [solid(#ff8800)], 2: [diffusion([((0, 0.5), #fff), (at: (0, 0, 0), #08f)])])",
             "depth_range: (1 + time, 20)",
             "light_map: paint(8, [stroke(camera, (0, 1), (3, 4), 2, #fff)])",

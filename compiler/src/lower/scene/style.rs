@@ -352,7 +352,7 @@ fn constraint(lowerer: &mut Lowerer<'_>, value: &Value) -> Lowered<Constraint<Sl
 
 fn light_map(lowerer: &mut Lowerer<'_>, word: &Word) -> Lowered<LightMap<Slot>> {
     let size = match optional(word, 0) {
-        Some((value, span)) => lowerer.whole(value, span, "the size of a light map", 4, 4096)?,
+        Some((value, span)) => lowerer.whole(value, span, "the size of a light map", 4, 1024)?,
         None => LIGHT_MAP,
     };
     let strokes = argument(word, 1).0.list();

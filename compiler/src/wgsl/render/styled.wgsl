@@ -170,15 +170,23 @@ fn lit_share(style: u32, ray: StyledRay, cell: Cell) -> f32 {
     }
     let left = u32(floor(begin));
     let right = min(u32(floor(end)), u32(columns) - 1u);
-    var dark = 0.0;
+    // The parts of the texels at the ends of the stretch that are dark, and all of those between.
+    var parts = 0.0;
+    var whole = 0u;
     for (var texel = left; texel <= right; texel++) {
         let slope = vol_input_word(ray.slice + texel);
-        let low = max(begin, f32(texel));
-        let high = min(end, f32(texel + 1u));
-        let holds_eye = (texel == 0u) & (first_distance == 0.0);
-        let hidden = select(0.0, high - low, slope > ray.slope);
-        dark += select(hidden, hidden_at_the_eye(slope, ray.slope, low, high), holds_eye);
+        let hides = slope > ray.slope;
+        if ((texel == left) | (texel == right)) {
+            let low = max(begin, f32(texel));
+            let high = min(end, f32(texel + 1u));
+            let holds_eye = (texel == 0u) & (first_distance == 0.0);
+            let hidden = select(0.0, high - low, hides);
+            parts += select(hidden, hidden_at_the_eye(slope, ray.slope, low, high), holds_eye);
+        } else {
+            whole += select(0u, 1u, hides);
+        }
     }
+    let dark = f32(whole) + parts;
     return min(max(1.0 - (dark / width), 0.0), 1.0);
 }
 

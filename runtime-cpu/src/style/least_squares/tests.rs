@@ -412,9 +412,12 @@ fn the_history_tells_how_it_went() {
 #[test]
 fn a_white_stroke_changes_nothing() {
     let mut random = Random(10);
-    let transport = Transport::new(random.rows(100, 64, 40, true), 64);
-    let target = transport.forward(&[[1.0; 3]; 64]);
-    let solution = fit(&transport, &target, 8, &Fit::default());
+    let rows = random.rows(100, 1024, 2000, true);
+    // As the caller adds up, which is not how the fit does.
+    let dense = Dense::new(&rows, 32);
+    let white = [0, 1, 2].map(|channel| dense.forward(channel, &[1.0; 1024]));
+    let target: Vec<Rgb> = (0..100).map(|pixel| from_fn(|channel| white[channel][pixel] as f32)).collect();
+    let solution = fit(&Transport::new(rows, 1024), &target, 32, &Fit::default());
     assert!(solution.texels.iter().all(|texel| *texel == [1.0; 3]));
     assert_eq!((solution.iterations, solution.converged, solution.residual), (0, true, 0.0));
 }

@@ -50,10 +50,12 @@ pub struct Prepared {
     pub light_maps: Vec<FittedMap>,
 }
 
+/// The texels of a style's light map, where they have been fitted before.
+pub type KnownMaps<'a> = &'a dyn Fn(&Style<f64>) -> Option<Vec<[f32; 3]>>;
+
 /// Prepares all styles of a frame for a picture of `size` pixels.
 ///
 /// * `images`: the pictures of [`Program::images`], in order
-/// * `known`: the texels of a style's light map, where they have been fitted before
 ///
 /// # Errors
 /// A stroke that touches no pixel: a message about the scene.
@@ -62,7 +64,7 @@ pub fn prepare(
     frame: &Frame,
     size: [u32; 2],
     images: &[Picture],
-    known: &dyn Fn(&Style<f64>) -> Option<Vec<[f32; 3]>>,
+    known: KnownMaps<'_>,
 ) -> Result<Prepared, Diagnostic> {
     let mut prepared = Prepared { lights: vec![None; frame.lights.len()], light_maps: Vec::new() };
     let Some(lit) = lit_bounds(frame).filter(|_| !frame.styles.is_empty()) else { return Ok(prepared) };

@@ -7,6 +7,7 @@
 //! * [`files`]: scenes of several files, params and chosen blocks
 //! * [`formatting`]: what `vol fmt` writes and says
 //! * [`limits`]: scenes that ask for too much, and the memory that they take
+//! * [`styles`]: maps of styles as files, and what refuses styles
 //! * [`mistakes`]: bad input of every kind, and what is left behind (nothing)
 
 mod animations;
@@ -17,6 +18,7 @@ mod formatting;
 mod limits;
 mod mistakes;
 mod pictures;
+mod styles;
 
 use libtest_mimic::{Failed, Trial};
 use std::ffi::OsStr;
@@ -35,6 +37,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         formatting::trials(),
         limits::trials(),
         mistakes::trials(),
+        styles::trials(),
     ]
     .into_iter()
     .flatten()
@@ -108,6 +111,8 @@ impl Sandbox {
     fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_vol"));
         command.current_dir(self.folder.path()).args(arguments).stdin(Stdio::null());
+        // What is kept from run to run is kept here.
+        command.env("XDG_CACHE_HOME", self.path("cache"));
         command
     }
 

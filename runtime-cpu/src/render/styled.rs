@@ -62,6 +62,9 @@ pub(crate) struct StyledRay<R> {
     tint: Vec3<R>,
 }
 
+/// A place where light is scattered, and how much of it the eye would see there.
+pub(crate) type Scattering<R> = (Vec3<R>, Vec3<R>);
+
 /// The rays of a batch by light; none for lights without a style.
 pub(crate) type StyledRays<R> = Vec<Option<Vec<StyledRay<R>>>>;
 
@@ -168,7 +171,7 @@ impl<F: Fields> Integrator<'_, F> {
         &mut self,
         rays: &[Ray<F::Real>],
         light: usize,
-    ) -> Vec<Vec<(Vec3<F::Real>, Vec3<F::Real>)>> {
+    ) -> Vec<Vec<Scattering<F::Real>>> {
         let ends = self.first_surfaces(rays);
         let styled = self.style_rays(rays, &ends);
         let combs = self.combs(rays, &ends, self.scene.step);

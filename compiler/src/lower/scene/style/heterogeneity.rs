@@ -135,9 +135,9 @@ fn weight(lowerer: &mut Lowerer<'_>, word: &Word) -> Lowered<ValueId> {
     let position = lowerer.position();
     let graph = &mut lowerer.graph;
     let mut square = graph.number(0.0);
-    for axis in 0..3 {
-        let off = graph.sub(position[axis], center.vec3()[axis]);
-        let off = graph.div(off, radii.vec3()[axis]);
+    for ((place, center), radius) in position.into_iter().zip(center.vec3()).zip(radii.vec3()) {
+        let off = graph.sub(place, center);
+        let off = graph.div(off, radius);
         let off = graph.mul(off, off);
         square = graph.add(square, off);
     }

@@ -8,11 +8,12 @@ use vol::compare::color_error;
 use vol_compiler::frame::styled::Occluders;
 use vol_compiler::frame::{CameraFrame, Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::Program;
+use vol_compiler::skip::Skips;
 use vol_runtime_cpu::style::{self, FittedMap, Picture};
 
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
-    let bodies: [(&str, Body); 14] = [
+    let bodies: [(&str, Body); 15] = [
         ("shafts_below_a_roof", shafts_below_a_roof),
         ("shafts_around_the_light", shafts_around_the_light),
         ("exact_and_mapped_shafts_agree", exact_and_mapped_shafts_agree),
@@ -27,6 +28,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         ("light_maps_meet_their_strokes", light_maps_meet_their_strokes),
         ("white_strokes_leave_a_white_map", white_strokes_leave_a_white_map),
         ("all_parts_together", all_parts_together),
+        ("all_looks_of_the_scenes", all_looks_of_the_scenes),
     ];
     let both = bodies.into_iter().flat_map(|(name, body)| on_both(&format!("styles::{name}"), body));
     let own = [
@@ -427,6 +429,35 @@ fn all_parts_together(draw: &Draw<'_>) -> Result<(), Failed> {
     alike("both backends", &on_cpu, &scene.draw(draw)?, 1e-5)?;
     let job = Job { quadrature: Quadrature::Corrected, ..scene.job };
     alike("both quadratures", &on_cpu, &draw(&scene.program, &scene.frame, &job)?, 1e-2)
+}
+
+/// Every look of every scene of examples/styles, alike on both backends and different from its neighbour.
+fn all_looks_of_the_scenes(draw: &Draw<'_>) -> Result<(), Failed> {
+    let size = [32, 18];
+    let looks = [("tree", 8), ("palm", 4), ("scarecrow", 3), ("flowerbed", 3), ("turtle", 6), ("citadel", 7)];
+    for (name, last) in looks {
+        let path = format!("{}/examples/styles/{name}.vol", env!("CARGO_MANIFEST_DIR"));
+        let session =
+            vol::session::load(path.as_ref(), Skips::ALL).map_err(|failure| format!("{failure:?}"))?;
+        let mut before: Option<Image> = None;
+        for look in 0..=last {
+            let set = [("look".to_owned(), look.to_string())];
+            let params = session.params(&set).map_err(|failure| format!("{failure:?}"))?;
+            let frame = session.program.frame(&params, 1.0, 0.0, size);
+            let mut frame = frame.map_err(|diagnostic| diagnostic.message)?;
+            let prepared = style::prepare(&session.program, &frame, size, &session.pictures, &|_| None);
+            frame.styled_lights = prepared.map_err(|diagnostic| diagnostic.message)?.lights;
+            let (quadrature, sampling) = (Quadrature::Midpoint, Sampling::CENTRE);
+            let job = Job { size, step: 0.25, shadow_step: 0.5, quadrature, sampling };
+            let on_cpu = crate::support::render(&session.program, &frame, &job, 2)?;
+            alike(&format!("{name} {look}"), &on_cpu, &draw(&session.program, &frame, &job)?, 1e-4)?;
+            if let Some(before) = before.replace(on_cpu.clone()) {
+                let error = color_error(&on_cpu, &before);
+                ensure(error > 1e-3, || format!("looks {look} and the one before of {name} are the same"))?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Share of the slices' texels within the map that are open.

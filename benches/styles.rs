@@ -56,7 +56,7 @@ fn stages() {
     for (map, [shadow_map, holes, surfaces, visibility, transfer]) in PAPER {
         println!("| {map}, paper | {shadow_map} | {holes} | - | {surfaces} | {visibility} | {transfer} |");
         let times = || style::stage_times(&session.program, &frame, SIZE, map).expect("the tree has a style");
-        let all: Vec<StageTimes> = (0..ROUNDS.min(3)).map(|_| times()).collect();
+        let all: Vec<StageTimes> = (0..2).map(|_| times()).collect();
         let least = |part: fn(&StageTimes) -> f64| all.iter().map(part).fold(f64::INFINITY, f64::min);
         println!(
             "| {map} | {:.0} | {:.1} | {:.1} | {:.0} | {:.1} | {:.1} |",
@@ -94,7 +94,7 @@ fn closings() {
 fn heterogeneity() {
     let (session, frame) = scene("tree", 7);
     let measure = |steps, upsample| {
-        let rounds = if steps > 64 { 1 } else { ROUNDS };
+        let rounds = if steps > 16 { 1 } else { ROUNDS };
         let found =
             || style::heterogeneity(&session.program, &frame, SIZE, steps, upsample).expect("it varies");
         let mut best = found();

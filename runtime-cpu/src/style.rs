@@ -38,8 +38,8 @@ use vol_compiler::wgsl::render::padded;
 /// Samples of media along the longest way through them.
 const STEPS: f32 = 768.0;
 
-/// Steps towards lights, over those from the eye.
-const SHADOW_STEP: f32 = 3.0;
+/// Steps towards lights, over those from the eye: what is missed towards the light is missed in the white map, too.
+const SHADOW_STEP: f32 = 24.0;
 
 /// What styles make of a frame.
 #[derive(Clone, Debug, Default)]

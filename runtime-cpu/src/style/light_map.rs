@@ -62,9 +62,15 @@ pub(super) fn fit(
         table.texels = texels;
         return Ok(FittedMap { style: style.name.clone(), table, fit: None });
     }
+    let mut views = Vec::new();
+    for (camera, strokes) in self::views(stage, &settings.strokes) {
+        views.push((camera, painted(&strokes, stage.job.size, stage.program.render.size)?));
+    }
+    let all: usize = views.iter().map(|(_, pixels)| pixels.len()).sum();
+    let stride = all.div_ceil(MAX_PIXELS).max(1);
     let (mut rows, mut wanted) = (Vec::new(), Vec::new());
-    for (camera, strokes) in views(stage, &settings.strokes) {
-        let pixels = painted(&strokes, stage.job.size, stage.program.render.size)?;
+    for (camera, pixels) in views {
+        let pixels: Vec<Painted> = pixels.into_iter().step_by(stride).collect();
         let frame = seen_from(stage, style, camera);
         for (row, color) in weights(stage, &frame, style.light, &table, &pixels).into_iter().zip(&pixels) {
             let white = row.iter().fold([0.0; 3], |sum, (_, w)| [0, 1, 2].map(|i| sum[i] + f64::from(w[i])));
@@ -132,8 +138,7 @@ fn painted(
             return Err(stroke_outside(stroke.span, painted_in));
         }
     }
-    let stride = pixels.len().div_ceil(MAX_PIXELS).max(1);
-    Ok(pixels.into_iter().step_by(stride).map(|([y, x], color)| ([x, y], color)).collect())
+    Ok(pixels.into_iter().map(|([y, x], color)| ([x, y], color)).collect())
 }
 
 /// A stroke in a picture of another size; as wide as the heights say.

@@ -181,8 +181,8 @@ struct Vol_in_Arriving {
     bool shadows;
     float slope;
     uint grid;
+    uint style;
     int _end_pad_0;
-    int _end_pad_1;
 };
 
 struct Vol_in_Around {
@@ -237,6 +237,10 @@ struct Vol_in_Glow {
     int _pad3_0;
     float3 coarse_transmittance;
     int _end_pad_0;
+};
+
+struct Vol_in_StyledRays {
+    float none;
 };
 
 struct Vol_in_Panels {
@@ -349,10 +353,12 @@ static const uint VOL_IN_OBJECT_COUNT = 0u;
 static const uint VOL_IN_MEDIUM_COUNT = 1u;
 static const uint VOL_IN_OBJECT_SLOTS = 1u;
 static const uint VOL_IN_MEDIUM_SLOTS = 1u;
+static const uint VOL_IN_LIGHT_SLOTS = 1u;
+static const uint VOL_IN_TRANSFER_SIZE = 256u;
 static const uint VOL_IN_OBJECT_WORDS = 8u;
 static const uint VOL_IN_MEDIUM_WORDS = 9u;
 static const uint VOL_IN_CELL_WORDS = 6u;
-static const uint VOL_IN_LIGHT_WORDS = 11u;
+static const uint VOL_IN_LIGHT_WORDS = 12u;
 static const uint VOL_IN_PIXEL_WORDS = 15u;
 static const uint VOL_IN_AT_OBJECTS = 27u;
 static const uint VOL_IN_AT_MEDIA = 27u;
@@ -361,6 +367,8 @@ static const bool VOL_IN_CORRECTED = true;
 static const bool VOL_IN_SOFT_LIGHTS = false;
 static const bool VOL_IN_OCCLUDING_LIGHTS = false;
 static const bool VOL_IN_LIGHT_GRIDS = true;
+static const bool VOL_IN_STYLES = false;
+static const bool VOL_IN_MARCHED_SHAFTS = false;
 static const float VOL_IN_FAR = 4000000.0;
 static const float VOL_IN_PARALLEL = 1e-12;
 static const float VOL_IN_EPSILON = 1.1920929e-7;
@@ -491,9 +499,9 @@ float3 vol_quarter_turn(float x_4)
 {
     float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
     const float _e3 = vol_round(u_1);
-    float t_39 = (u_1 - _e3);
-    const float _e7 = vol_round((t_39 * 4.0));
-    float r = (t_39 - (_e7 * 0.25));
+    float t_40 = (u_1 - _e3);
+    const float _e7 = vol_round((t_40 * 4.0));
+    float r = (t_40 - (_e7 * 0.25));
     float s = (r * r);
     float a3_1 = (-76.69787 + (s * 41.472946));
     float a2_ = (81.6052 + (s * a3_1));
@@ -1208,11 +1216,11 @@ Vol_CurveSlopes vol_slopes(float3 p_14, uint word_13, float t_12)
     float per_speed_1 = (_e33 / speed_1);
     float3 tangent_2 = (is_straight_1 ? _e11 : (v_7 * per_speed_1));
     const float _e37 = vol_dot(_e19, _e19);
-    float distance_12 = sqrt(_e37);
-    float per_distance = ((distance_12 > 0.0) ? (-1.0 / max(distance_12, VOL_TINY)) : 0.0);
+    float distance_11 = sqrt(_e37);
+    float per_distance = ((distance_11 > 0.0) ? (-1.0 / max(distance_11, VOL_TINY)) : 0.0);
     bool at_end = ((t_12 == 0.0) | (t_12 == 1.0));
     const float _e52 = vol_dot(_e19, tangent_2);
-    bool held_1 = (at_end & (abs(_e52) > (VOL_LEAN * distance_12)));
+    bool held_1 = (at_end & (abs(_e52) > (VOL_LEAN * distance_11)));
     const float3 _e58 = vol_cross(_e14, v_7);
     const float _e59 = vol_dot(_e19, _e58);
     float bent_2 = (_e59 / vv_1);
@@ -1877,11 +1885,11 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, float3 lo_2, float3 hi_2)
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[min(uint(_e31), 2u)]) | (o > hi_2[min(uint(_e34), 2u)]));
             float near_5 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_9, b_8));
-            float end_15 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_9, b_8));
+            float end_16 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_9, b_8));
             float _e50 = span_1.entry;
             span_1.entry = max(_e50, near_5);
             float _e54 = span_1.leave;
-            span_1.leave = min(_e54, end_15);
+            span_1.leave = min(_e54, end_16);
         }
     }
     Vol_in_Span _e59 = span_1;
@@ -2050,11 +2058,11 @@ Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout
                 uint _e50 = solid_5;
                 const float3 _e51 = vol_in_ray_at(ray_5, t_16);
                 const float _e52 = vol_in_object_distance(_e50, _e51);
-                float seen_2 = (_e49 * _e52);
+                float seen_3 = (_e49 * _e52);
                 float _e56 = near.value;
-                near.value = min(_e56, seen_2);
+                near.value = min(_e56, seen_3);
                 uint _e58 = solid_5;
-                const float _e60 = vol_in_shorten(_e58, ray_5, t_16, (t_16 - before_1), seen_2);
+                const float _e60 = vol_in_shorten(_e58, ray_5, t_16, (t_16 - before_1), seen_3);
                 float _e62 = near.distance_;
                 bool closer = (_e60 < _e62);
                 float _e66 = near.distance_;
@@ -2107,8 +2115,8 @@ float vol_in_probe(Vol_in_Bracket bracket)
 {
     bool is_proper = ((bracket.outside.y >= 0.0) & (bracket.inside.y < 0.0));
     float fall = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
-    float part_2 = (bracket.outside.y / fall);
-    float between_2 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_2));
+    float part_3 = (bracket.outside.y / fall);
+    float between_2 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
     return (is_proper ? between_2 : bracket.inside.x);
 }
 
@@ -2328,7 +2336,7 @@ uint vol_in_light_count()
     return naga_f2u32(_e1);
 }
 
-Vol_in_Arriving ConstructVol_in_Arriving(float3 arg0, float arg1, float3 arg2, bool arg3, float arg4, uint arg5) {
+Vol_in_Arriving ConstructVol_in_Arriving(float3 arg0, float arg1, float3 arg2, bool arg3, float arg4, uint arg5, uint arg6) {
     Vol_in_Arriving ret = (Vol_in_Arriving)0;
     ret.direction = arg0;
     ret.distance_ = arg1;
@@ -2336,6 +2344,7 @@ Vol_in_Arriving ConstructVol_in_Arriving(float3 arg0, float arg1, float3 arg2, b
     ret.shadows = arg3;
     ret.slope = arg4;
     ret.grid = arg5;
+    ret.style = arg6;
     return ret;
 }
 
@@ -2348,19 +2357,21 @@ Vol_in_Arriving vol_in_arriving(uint light, float3 point_3)
     float3 toward_2 = (_e11 - point_3);
     const float _e13 = vol_in_dot3_(toward_2, toward_2);
     float squared = max(_e13, 1e-12);
-    float distance_13 = sqrt(squared);
+    float distance_12 = sqrt(squared);
     const float3 _e21 = vol_in_word3_((at_2 + 1u));
-    float3 direction_5 = (distant ? _e21 : (toward_2 / (distance_13).xxx));
+    float3 direction_5 = (distant ? _e21 : (toward_2 / (distance_12).xxx));
     const float3 _e25 = vol_in_word3_((at_2 + 4u));
     const float3 _e30 = vol_in_word3_((at_2 + 4u));
     float3 irradiance = (distant ? _e30 : (_e25 / (squared).xxx));
     const float _e34 = vol_frame_word((at_2 + 7u));
     bool shadows = (_e34 != 0.0);
     const float _e39 = vol_frame_word((at_2 + 8u));
-    float slope_11 = (distant ? _e39 : min((_e39 / distance_13), VOL_IN_MAX_SPREAD_TANGENT));
+    float slope_11 = (distant ? _e39 : min((_e39 / distance_12), VOL_IN_MAX_SPREAD_TANGENT));
     const float _e46 = vol_frame_word((at_2 + 10u));
-    uint grid_5 = naga_f2u32(_e46);
-    const Vol_in_Arriving vol_in_arriving_1 = ConstructVol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_13), irradiance, shadows, slope_11, grid_5);
+    uint grid_4 = naga_f2u32(_e46);
+    const float _e50 = vol_frame_word((at_2 + 11u));
+    uint style = naga_f2u32(_e50);
+    const Vol_in_Arriving vol_in_arriving_1 = ConstructVol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_12), irradiance, shadows, slope_11, grid_4, style);
     return vol_in_arriving_1;
 }
 
@@ -2559,7 +2570,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
     lowest_1 = _e6;
     const Vol_in_Span _e8[1] = vol_in_cone_spans(ray_13, distance_2, slope_4);
     spans_5 = _e8;
-    float end_16 = min(distance_2, VOL_IN_FAR);
+    float end_17 = min(distance_2, VOL_IN_FAR);
     uint2 loop_bound_13 = uint2(4294967295u, 4294967295u);
     bool loop_init_13 = true;
     while(true) {
@@ -2586,7 +2597,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             }
             float _e31 = t_28;
             float _e39 = t_28;
-            bool counts = (((_e31 > 0.0) & (_e26.distance_ >= 0.0)) & (_e26.distance_ < (end_16 - _e39)));
+            bool counts = (((_e31 > 0.0) & (_e26.distance_ >= 0.0)) & (_e26.distance_ < (end_17 - _e39)));
             float _e43 = t_28;
             float divisor_2 = (counts ? _e43 : 1.0);
             float sine_1 = min((_e26.distance_ / divisor_2), 1.0);
@@ -2606,7 +2617,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             const float _e72 = vol_in_cone_step(_e26, least_step_1, slope_4, _e71);
             t_28 = (_e70 + _e72);
             float _e74 = t_28;
-            if ((_e74 >= end_16)) {
+            if ((_e74 >= end_17)) {
                 break;
             }
         }
@@ -2619,8 +2630,8 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
 float vol_in_clear_depth(float clear, float2 end_1, float2 place)
 {
     float2 aside_1 = (place - end_1);
-    float distance_14 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
-    return ((clear > 0.0) ? (clear - distance_14) : -2.0);
+    float distance_13 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
+    return ((clear > 0.0) ? (clear - distance_13) : -2.0);
 }
 
 float vol_in_lit_part(float centre, inout float clear_1[8])
@@ -2690,7 +2701,7 @@ float vol_in_lit_part(float centre, inout float clear_1[8])
         }
     }
     float _e62 = sum_2;
-    float part_3 = (_e62 / 19.0);
+    float part_4 = (_e62 / 19.0);
     float whole_2 = max(((4.0 * centre) - 3.0), 0.0);
     widest = centre;
     uint2 loop_bound_16 = uint2(4294967295u, 4294967295u);
@@ -2716,7 +2727,7 @@ float vol_in_lit_part(float centre, inout float clear_1[8])
         }
     }
     float _e90 = widest;
-    return ((part_3 + ((1.0 - part_3) * (whole_2 * whole_2))) * min((10.0 * _e90), 1.0));
+    return ((part_4 + ((1.0 - part_4) * (whole_2 * whole_2))) * min((10.0 * _e90), 1.0));
 }
 
 float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2, float slope_5)
@@ -2744,11 +2755,11 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
         }
         {
             uint _e14 = index_16;
-            uint end_17 = (max(_e14, 1u) - 1u);
+            uint end_18 = (max(_e14, 1u) - 1u);
             toward = ray_14;
             uint _e20 = index_16;
             if ((_e20 > 0u)) {
-                float2 _e24 = ends_1[min(uint(end_17), 7u)];
+                float2 _e24 = ends_1[min(uint(end_18), 7u)];
                 const Vol_in_Ray _e25 = vol_in_rim(ray_14, slope_5, _e24);
                 toward = _e25;
             }
@@ -2756,7 +2767,7 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
             const float _e27 = vol_in_walk(_e26, distance_3, least_step_2, slope_5);
             uint _e28 = index_16;
             if ((_e28 > 0u)) {
-                clear_2[min(uint(end_17), 7u)] = _e27;
+                clear_2[min(uint(end_18), 7u)] = _e27;
             } else {
                 if ((_e27 >= 1.0)) {
                     return 1.0;
@@ -2814,7 +2825,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2)
     sides_5 = _e3;
     const Vol_in_Span _e5[1] = vol_in_object_spans(ray_15, sides_5);
     spans_6 = _e5;
-    float end_18 = min(distance_4, VOL_IN_FAR);
+    float end_19 = min(distance_4, VOL_IN_FAR);
     uint2 loop_bound_19 = uint2(4294967295u, 4294967295u);
     bool loop_init_19 = true;
     while(true) {
@@ -2845,7 +2856,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2)
             t_29 = (_e27 + _e29);
             bool _e31 = inside_1;
             float _e32 = t_29;
-            if ((_e31 | (_e32 >= end_18))) {
+            if ((_e31 | (_e32 >= end_19))) {
                 break;
             }
         }
@@ -2870,8 +2881,8 @@ Vol_in_Stencil ConstructVol_in_Stencil(uint4 arg0, float4 arg1) {
 Vol_in_Stencil vol_in_stencil(float place_1, float last_2, uint words)
 {
     float index_22 = min(floor(place_1), (last_2 - 1.0));
-    float t_40 = (place_1 - index_22);
-    float4 weights_8 = float4(((((1.0 - (0.5 * t_40)) * t_40) - 0.5) * t_40), (((((1.5 * t_40) - 2.5) * t_40) * t_40) + 1.0), ((((2.0 - (1.5 * t_40)) * t_40) + 0.5) * t_40), ((((0.5 * t_40) - 0.5) * t_40) * t_40));
+    float t_41 = (place_1 - index_22);
+    float4 weights_8 = float4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
     int4 around = asint(asuint((naga_f2i32(index_22)).xxxx) + asuint(int4(int(-1), int(0), int(1), int(2))));
     const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil((uint4(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx)) * words), weights_8);
     return vol_in_stencil_1;
@@ -2960,9 +2971,9 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     bool ahead_4 = (distant_1 | (_e29 > (0.5 * _e7.z)));
     float divisor_3 = ((ahead_4 & !(distant_1)) ? _e29 : 1.0);
     const float _e41 = vol_in_length3_(off);
-    float3 seen_3 = float3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
+    float3 seen_4 = float3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
     float3 last_5 = (_e13 - (1.0).xxx);
-    float3 place_8 = ((seen_3 - _e7) * _e10);
+    float3 place_8 = ((seen_4 - _e7) * _e10);
     bool beside_1 = ((((place_8.x < 0.0) | (place_8.x > last_5.x)) | (place_8.y < 0.0)) | (place_8.y > last_5.y));
     if (((!(ahead_4) | beside_1) | (place_8.z <= 0.0))) {
         return (0.0).xxx;
@@ -3402,9 +3413,9 @@ float2 vol_in_panel_masses(float step_size_4, float length_, float2 ends_2, bool
     bool changes = ((above > 0.0) & (below < 0.0));
     float2 densities = max(ends_2, (0.0).xx);
     float rise_3 = (open.x ? (densities.y - densities.x) : (densities.x - densities.y));
-    float part_4 = (step_size_4 / max(length_, (0.25 * step_size_4)));
+    float part_5 = (step_size_4 / max(length_, (0.25 * step_size_4)));
     float most_1 = (0.5 * (half_1 * (densities.x + densities.y)));
-    float missed = max(min(((0.083333336 * step_size_4) * (part_4 * rise_3)), most_1), -(most_1));
+    float missed = max(min(((0.083333336 * step_size_4) * (part_5 * rise_3)), most_1), -(most_1));
     float2 given = (open.x ? float2(0.0, missed) : float2(missed, 0.0));
     float2 plain = max(((half_1 * densities) + ((open.x == open.y) ? (0.0).xx : given)), (0.0).xx);
     float fall_2 = (changes ? (above - below) : 1.0);
@@ -3427,7 +3438,7 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_
     float step_size_7 = comb_5.step_;
     const float _e6 = vol_in_panel_node(comb_5, node_5);
     const float _e9 = vol_in_panel_node(comb_5, asint(asuint(node_5) + asuint(int(1))));
-    float2 t_41 = float2(_e6, _e9);
+    float2 t_42 = float2(_e6, _e9);
     uint2 loop_bound_27 = uint2(4294967295u, 4294967295u);
     bool loop_init_26 = true;
     while(true) {
@@ -3447,13 +3458,13 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_
             uint _e20 = medium_6;
             float own_5 = comb_5.own[min(uint(_e20), 0u)];
             uint _e23 = medium_6;
-            const Vol_in_Between _e24 = vol_in_find_walls(ray_20, _e23, comb_5, node_5, t_41);
+            const Vol_in_Between _e24 = vol_in_find_walls(ray_20, _e23, comb_5, node_5, t_42);
             float next_2 = _e24.next;
             uint _e26 = medium_6;
             float4 _e28 = before_5[min(uint(_e26), 0u)];
             first_1 = _e28;
             last_3 = (0.0).xxxx;
-            stretch = t_41;
+            stretch = t_42;
             kind = VOL_IN_AFTER;
             uint2 loop_bound_28 = uint2(4294967295u, 4294967295u);
             bool loop_init_27 = true;
@@ -3475,7 +3486,7 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_
                     bool is_wall = (_e41 >= VOL_IN_WALL);
                     uint _e44 = kind;
                     uint wall_1 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
-                    float distance_15 = (is_wall ? _e24.walls[min(uint(wall_1), 1u)] : t_41.y);
+                    float distance_14 = (is_wall ? _e24.walls[min(uint(wall_1), 1u)] : t_42.y);
                     matter = (0.0).xxxx;
                     if (!(is_wall)) {
                         local_6 = (next_2 < 0.0);
@@ -3485,7 +3496,7 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_
                     bool _e62 = local_6;
                     if (_e62) {
                         uint _e63 = medium_6;
-                        const float3 _e64 = vol_in_ray_at(ray_20, distance_15);
+                        const float3 _e64 = vol_in_ray_at(ray_20, distance_14);
                         const float4 _e65 = vol_in_medium_extinction(_e63, _e64);
                         matter = _e65;
                     }
@@ -3500,18 +3511,18 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_
                         if (_e71) {
                             float4 _e72 = matter;
                             last_3 = _e72;
-                            stretch.y = distance_15;
+                            stretch.y = distance_14;
                         } else {
                             float4 _e74 = matter;
                             first_1 = _e74;
-                            stretch.x = distance_15;
+                            stretch.x = distance_14;
                         }
                     }
                 }
             }
-            const bool _e79 = vol_in_has_panel(comb_5, node_5, t_41, own_5, _e24);
+            const bool _e79 = vol_in_has_panel(comb_5, node_5, t_42, own_5, _e24);
             if (_e79) {
-                const bool2 _e80 = vol_in_open_ends(comb_5, node_5, t_41, own_5, next_2);
+                const bool2 _e80 = vol_in_open_ends(comb_5, node_5, t_42, own_5, next_2);
                 float _e82 = stretch.y;
                 float _e84 = stretch.x;
                 float _e87 = first_1.x;
@@ -3592,8 +3603,8 @@ float vol_in_wall(Vol_in_Ray ray_22, uint medium_7, int2 range, float t_33, int 
 float vol_in_share(float own_3, float other_1, float step_size_6)
 {
     float divisor_4 = ((own_3 < other_1) ? (own_3 - other_1) : -1.0);
-    float part_5 = (step_size_6 * (own_3 / divisor_4));
-    return ((other_1 < 0.0) ? (0.5 * step_size_6) : part_5);
+    float part_6 = (step_size_6 * (own_3 / divisor_4));
+    return ((other_1 < 0.0) ? (0.5 * step_size_6) : part_6);
 }
 
 bool vol_in_weigh(Vol_in_Ray ray_23, inout Vol_in_Comb comb_7, int node_8, inout float weights[1])
@@ -3970,7 +3981,19 @@ Vol_in_Glow vol_in_clear_glow()
     return vol_in_glow;
 }
 
-void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10, float2 t_34, inout Vol_in_Panels panels)
+Vol_in_StyledRays ConstructVol_in_StyledRays(float arg0) {
+    Vol_in_StyledRays ret = (Vol_in_StyledRays)0;
+    ret.none = arg0;
+    return ret;
+}
+
+Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_30, float end_10)
+{
+    const Vol_in_StyledRays vol_in_styledrays = ConstructVol_in_StyledRays(0.0);
+    return vol_in_styledrays;
+}
+
+void vol_in_find_panels(Vol_in_Ray ray_31, inout Vol_in_Comb comb_9, int node_10, float2 t_34, inout Vol_in_Panels panels)
 {
     uint medium_10 = 0u;
     float2 masses = (float2)0;
@@ -4001,7 +4024,7 @@ void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10
             uint _e16 = medium_10;
             float own_7 = comb_9.own[min(uint(_e16), 0u)];
             uint _e19 = medium_10;
-            const Vol_in_Between _e20 = vol_in_find_walls(ray_30, _e19, comb_9, node_10, t_34);
+            const Vol_in_Between _e20 = vol_in_find_walls(ray_31, _e19, comb_9, node_10, t_34);
             float next_3 = _e20.next;
             masses = (0.0).xx;
             ends_3 = uint2(0u, 1u);
@@ -4029,7 +4052,7 @@ void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10
                     bool is_wall_1 = (_e41 >= VOL_IN_WALL);
                     uint _e44 = kind_1;
                     uint wall_2 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
-                    float distance_16 = (is_wall_1 ? _e20.walls[min(uint(wall_2), 1u)] : t_34.y);
+                    float distance_15 = (is_wall_1 ? _e20.walls[min(uint(wall_2), 1u)] : t_34.y);
                     interior = ConstructVol_in_Interior(0.0, (0.0).xxx, (0.0).xxx, (0.0).xxx);
                     if (!(is_wall_1)) {
                         local_8 = (next_3 < 0.0);
@@ -4039,7 +4062,7 @@ void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10
                     bool _e68 = local_8;
                     if (_e68) {
                         uint _e69 = medium_10;
-                        const float3 _e70 = vol_in_ray_at(ray_30, distance_16);
+                        const float3 _e70 = vol_in_ray_at(ray_31, distance_15);
                         const Vol_in_Interior _e71 = vol_in_medium_interior(_e69, _e70);
                         interior = _e71;
                     }
@@ -4057,7 +4080,7 @@ void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10
                     float2 _e92 = stretch_1;
                     float _e94 = stretch_1.y;
                     float _e97 = stretch_1.x;
-                    stretch_1 = (is_wall_1 ? (_e80 ? float2(_e97, distance_16) : float2(distance_16, _e94)) : _e92);
+                    stretch_1 = (is_wall_1 ? (_e80 ? float2(_e97, distance_15) : float2(distance_15, _e94)) : _e92);
                 }
             }
             const bool _e104 = vol_in_has_panel(comb_9, node_10, t_34, own_7, _e20);
@@ -4093,17 +4116,17 @@ void vol_in_find_panels(Vol_in_Ray ray_30, inout Vol_in_Comb comb_9, int node_10
     return;
 }
 
-float3 vol_in_visibility(Vol_in_Ray ray_31, float distance_10, float bias_2, uint grid_4)
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_32, float t_35)
 {
-    const float _e4 = vol_in_unblocked(ray_31, distance_10, bias_2);
-    const float3 _e5 = vol_in_through_media(ray_31, distance_10, _e4, grid_4);
-    return _e5;
+    return 1.0;
 }
 
-float3 vol_in_place_visibility(Vol_in_Arriving lamp_2, float3 point_7, float t_35, inout float3 scatter[1])
+float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_33, float t_36, inout float3 scatter[1])
 {
     bool asked = false;
     uint medium_11 = 0u;
+    float part_2 = 1.0;
+    bool local_9 = (bool)0;
 
     uint2 loop_bound_38 = uint2(4294967295u, 4294967295u);
     bool loop_init_37 = true;
@@ -4111,33 +4134,53 @@ float3 vol_in_place_visibility(Vol_in_Arriving lamp_2, float3 point_7, float t_3
         if (all(loop_bound_38 == uint2(0u, 0u))) { break; }
         loop_bound_38 -= uint2(loop_bound_38.y == 0u, 1u);
         if (!loop_init_37) {
-            uint _e27 = medium_11;
-            medium_11 = (_e27 + 1u);
+            uint _e29 = medium_11;
+            medium_11 = (_e29 + 1u);
         }
         loop_init_37 = false;
-        uint _e8 = medium_11;
-        if ((_e8 < VOL_IN_MEDIUM_COUNT)) {
+        uint _e10 = medium_11;
+        if ((_e10 < VOL_IN_MEDIUM_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e11 = medium_11;
-            float3 _e13 = scatter[min(uint(_e11), 0u)];
-            bool scatters = any((_e13 > (0.0).xxx));
-            bool _e18 = asked;
-            uint _e19 = medium_11;
-            const uint _e20 = vol_in_medium_word(_e19);
-            const float _e21 = vol_frame_word(_e20);
-            asked = (_e18 | (scatters & (_e21 == VOL_IN_SHADOWED)));
+            uint _e13 = medium_11;
+            float3 _e15 = scatter[min(uint(_e13), 0u)];
+            bool scatters = any((_e15 > (0.0).xxx));
+            bool _e20 = asked;
+            uint _e21 = medium_11;
+            const uint _e22 = vol_in_medium_word(_e21);
+            const float _e23 = vol_frame_word(_e22);
+            asked = (_e20 | (scatters & (_e23 == VOL_IN_SHADOWED)));
         }
     }
-    bool _e29 = asked;
-    if ((_e29 & lamp_2.shadows)) {
-        const Vol_in_Ray _e33 = vol_in_new_ray(point_7, lamp_2.direction);
-        const float _e35 = vol_in_shadow_bias(t_35);
-        const float3 _e37 = vol_in_visibility(_e33, lamp_2.distance_, _e35, lamp_2.grid);
-        return _e37;
+    bool _e31 = asked;
+    if ((_e31 & lamp_3.shadows)) {
+        const float3 _e34 = vol_in_ray_at(ray_33, t_36);
+        const Vol_in_Ray _e36 = vol_in_new_ray(_e34, lamp_3.direction);
+        if (VOL_IN_STYLES) {
+            local_9 = (lamp_3.style != 0u);
+        } else {
+            local_9 = false;
+        }
+        bool _e46 = local_9;
+        if (_e46) {
+            const float _e47 = vol_in_styled_share(lamp_3, light_3, styled, ray_33, t_36);
+            part_2 = _e47;
+        } else {
+            const float _e49 = vol_in_shadow_bias(t_36);
+            const float _e50 = vol_in_unblocked(_e36, lamp_3.distance_, _e49);
+            part_2 = _e50;
+        }
+        float _e52 = part_2;
+        const float3 _e54 = vol_in_through_media(_e36, lamp_3.distance_, _e52, lamp_3.grid);
+        return _e54;
     }
+    return (1.0).xxx;
+}
+
+float3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, float3 point_7)
+{
     return (1.0).xxx;
 }
 
@@ -4150,11 +4193,11 @@ float2 vol_in_turn(float3 toward_1, float3 direction_2)
     return float2((0.5 * _e4), (0.5 * _e7));
 }
 
-void vol_in_scatter_light(Vol_in_Arriving lamp_3, float3 seen_1, float3 direction_3, inout float3 scatter_1[1], inout float3 source[1])
+void vol_in_scatter_light(Vol_in_Arriving lamp_5, float3 seen_1, float3 direction_3, inout float3 scatter_1[1], inout float3 source[1])
 {
     uint medium_12 = 0u;
 
-    const float2 _e6 = vol_in_turn(lamp_3.direction, direction_3);
+    const float2 _e6 = vol_in_turn(lamp_5.direction, direction_3);
     uint2 loop_bound_39 = uint2(4294967295u, 4294967295u);
     bool loop_init_38 = true;
     while(true) {
@@ -4175,46 +4218,63 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_3, float3 seen_1, float3 directio
             const uint _e13 = vol_in_medium_word(_e12);
             const float _e14 = vol_frame_word(_e13);
             uint _e15 = medium_12;
-            float3 part_6 = scatter_1[min(uint(_e15), 0u)];
-            if ((any((part_6 > (0.0).xxx)) & (_e14 > VOL_IN_UNLIT))) {
+            float3 part_7 = scatter_1[min(uint(_e15), 0u)];
+            if ((any((part_7 > (0.0).xxx)) & (_e14 > VOL_IN_UNLIT))) {
                 uint _e25 = medium_12;
                 const float _e28 = vol_in_medium_phase(_e25, _e6.x, _e6.y);
                 float3 arrives = ((_e14 == VOL_IN_UNSHADOWED) ? (1.0).xxx : seen_1);
                 uint _e34 = medium_12;
                 float3 _e36 = source[min(uint(_e34), 0u)];
-                source[min(uint(_e34), 0u)] = (_e36 + ((part_6 * _e28) * (lamp_3.irradiance * arrives)));
+                source[min(uint(_e34), 0u)] = (_e36 + ((part_7 * _e28) * (lamp_5.irradiance * arrives)));
             }
         }
     }
     return;
 }
 
-void vol_in_light_place(Vol_in_Ray ray_32, float t_36, inout float3 scatter_2[1], inout float3 source_1[1])
+void vol_in_light_place(Vol_in_Ray ray_34, float t_37, inout Vol_in_StyledRays styled_1, inout float3 scatter_2[1], inout float3 source_1[1])
 {
-    uint light_2 = 0u;
+    uint light_5 = 0u;
+    float3 seen_2 = (float3)0;
+    bool local_10 = (bool)0;
 
-    const float3 _e4 = vol_in_ray_at(ray_32, t_36);
-    const uint _e5 = vol_in_light_count();
+    const float3 _e5 = vol_in_ray_at(ray_34, t_37);
+    const uint _e6 = vol_in_light_count();
     uint2 loop_bound_40 = uint2(4294967295u, 4294967295u);
     bool loop_init_39 = true;
     while(true) {
         if (all(loop_bound_40 == uint2(0u, 0u))) { break; }
         loop_bound_40 -= uint2(loop_bound_40.y == 0u, 1u);
         if (!loop_init_39) {
-            uint _e15 = light_2;
-            light_2 = (_e15 + 1u);
+            uint _e31 = light_5;
+            light_5 = (_e31 + 1u);
         }
         loop_init_39 = false;
-        uint _e8 = light_2;
-        if ((_e8 < _e5)) {
+        uint _e9 = light_5;
+        if ((_e9 < _e6)) {
         } else {
             break;
         }
         {
-            uint _e10 = light_2;
-            const Vol_in_Arriving _e11 = vol_in_arriving(_e10, _e4);
-            const float3 _e12 = vol_in_place_visibility(_e11, _e4, t_36, scatter_2);
-            vol_in_scatter_light(_e11, _e12, ray_32.direction, scatter_2, source_1);
+            uint _e11 = light_5;
+            const Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
+            uint _e13 = light_5;
+            const float3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_34, t_37, scatter_2);
+            seen_2 = _e14;
+            if (VOL_IN_STYLES) {
+                local_10 = (_e12.style != 0u);
+            } else {
+                local_10 = false;
+            }
+            bool _e23 = local_10;
+            if (_e23) {
+                float3 _e24 = seen_2;
+                uint _e25 = light_5;
+                const float3 _e26 = vol_in_styled_tint(_e12, _e25, styled_1, _e5);
+                seen_2 = (_e24 * _e26);
+            }
+            float3 _e28 = seen_2;
+            vol_in_scatter_light(_e12, _e28, ray_34.direction, scatter_2, source_1);
         }
     }
     return;
@@ -4225,11 +4285,11 @@ ret_ZeroValuearray1_float3_ ZeroValuearray1_float3_() {
     return (float3[1])0;
 }
 
-bool vol_in_light_ends(Vol_in_Ray ray_33, float2 t_37, inout Vol_in_Panels panels_1)
+bool vol_in_light_ends(Vol_in_Ray ray_35, float2 t_38, inout Vol_in_StyledRays styled_2, inout Vol_in_Panels panels_1)
 {
     bool lit_after = false;
     uint place_2 = 0u;
-    float distance_11 = (float)0;
+    float distance_10 = (float)0;
     bool wanted_1 = (bool)0;
     float3 scatter_3[1] = (float3[1])0;
     float3 source_2[1] = (float3[1])0;
@@ -4242,25 +4302,25 @@ bool vol_in_light_ends(Vol_in_Ray ray_33, float2 t_37, inout Vol_in_Panels panel
         if (all(loop_bound_41 == uint2(0u, 0u))) { break; }
         loop_bound_41 -= uint2(loop_bound_41.y == 0u, 1u);
         if (!loop_init_40) {
-            uint _e139 = place_2;
-            place_2 = (_e139 + 1u);
+            uint _e140 = place_2;
+            place_2 = (_e140 + 1u);
         }
         loop_init_40 = false;
-        uint _e7 = place_2;
-        if ((_e7 < 4u)) {
+        uint _e8 = place_2;
+        if ((_e8 < 4u)) {
         } else {
             break;
         }
         {
-            uint _e10 = place_2;
-            bool is_wall_2 = (_e10 >= VOL_IN_WALL);
-            uint _e13 = place_2;
-            uint wall_3 = naga_mod((max(_e13, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
-            uint _e20 = place_2;
-            uint owner = naga_div((max(_e20, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
-            uint _e27 = place_2;
-            uint kind_2 = (is_wall_2 ? (VOL_IN_WALL + wall_3) : _e27);
-            distance_11 = ((kind_2 == VOL_IN_BEFORE) ? t_37.x : t_37.y);
+            uint _e11 = place_2;
+            bool is_wall_2 = (_e11 >= VOL_IN_WALL);
+            uint _e14 = place_2;
+            uint wall_3 = naga_mod((max(_e14, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
+            uint _e21 = place_2;
+            uint owner = naga_div((max(_e21, VOL_IN_WALL) - VOL_IN_WALL), VOL_IN_MOST_WALLS);
+            uint _e28 = place_2;
+            uint kind_2 = (is_wall_2 ? (VOL_IN_WALL + wall_3) : _e28);
+            distance_10 = ((kind_2 == VOL_IN_BEFORE) ? t_38.x : t_38.y);
             wanted_1 = false;
             scatter_3 = ZeroValuearray1_float3_();
             source_2 = ZeroValuearray1_float3_();
@@ -4271,50 +4331,50 @@ bool vol_in_light_ends(Vol_in_Ray ray_33, float2 t_37, inout Vol_in_Panels panel
                 if (all(loop_bound_42 == uint2(0u, 0u))) { break; }
                 loop_bound_42 -= uint2(loop_bound_42.y == 0u, 1u);
                 if (!loop_init_41) {
-                    uint _e102 = medium_13;
-                    medium_13 = (_e102 + 1u);
+                    uint _e103 = medium_13;
+                    medium_13 = (_e103 + 1u);
                 }
                 loop_init_41 = false;
-                uint _e45 = medium_13;
-                if ((_e45 < VOL_IN_MEDIUM_COUNT)) {
+                uint _e46 = medium_13;
+                if ((_e46 < VOL_IN_MEDIUM_COUNT)) {
                 } else {
                     break;
                 }
                 {
-                    uint _e49 = medium_13;
-                    uint2 ends_5 = panels_1.ends[min(uint(_e49), 0u)];
-                    uint _e53 = medium_13;
-                    bool own_8 = (!(is_wall_2) | (_e53 == owner));
-                    uint _e61 = medium_13;
-                    float2 _e63 = panels_1.masses[min(uint(_e61), 0u)];
-                    bool asks = ((own_8 & any((ends_5 == (kind_2).xx))) & any((_e63 > (0.0).xx)));
-                    bool _e69 = wanted_1;
-                    wanted_1 = (_e69 | asks);
-                    uint _e71 = medium_13;
-                    scatter_3[min(uint(_e71), 0u)] = (0.0).xxx;
-                    uint _e75 = medium_13;
-                    source_2[min(uint(_e75), 0u)] = (0.0).xxx;
+                    uint _e50 = medium_13;
+                    uint2 ends_5 = panels_1.ends[min(uint(_e50), 0u)];
+                    uint _e54 = medium_13;
+                    bool own_8 = (!(is_wall_2) | (_e54 == owner));
+                    uint _e62 = medium_13;
+                    float2 _e64 = panels_1.masses[min(uint(_e62), 0u)];
+                    bool asks = ((own_8 & any((ends_5 == (kind_2).xx))) & any((_e64 > (0.0).xx)));
+                    bool _e70 = wanted_1;
+                    wanted_1 = (_e70 | asks);
+                    uint _e72 = medium_13;
+                    scatter_3[min(uint(_e72), 0u)] = (0.0).xxx;
+                    uint _e76 = medium_13;
+                    source_2[min(uint(_e76), 0u)] = (0.0).xxx;
                     if ((!(is_wall_2) | asks)) {
-                        uint _e84 = medium_13;
-                        Vol_in_Interior interior_1 = panels_1.interiors[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e84)), 3u)];
-                        uint _e88 = medium_13;
-                        scatter_3[min(uint(_e88), 0u)] = interior_1.scattering;
-                        uint _e91 = medium_13;
-                        source_2[min(uint(_e91), 0u)] = interior_1.emission;
-                        float _e94 = distance_11;
-                        uint _e96 = medium_13;
-                        float _e99 = panels_1.walls[min(uint(_e96), 0u)][min(uint(wall_3), 1u)];
-                        distance_11 = (is_wall_2 ? _e99 : _e94);
+                        uint _e85 = medium_13;
+                        Vol_in_Interior interior_1 = panels_1.interiors[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e85)), 3u)];
+                        uint _e89 = medium_13;
+                        scatter_3[min(uint(_e89), 0u)] = interior_1.scattering;
+                        uint _e92 = medium_13;
+                        source_2[min(uint(_e92), 0u)] = interior_1.emission;
+                        float _e95 = distance_10;
+                        uint _e97 = medium_13;
+                        float _e100 = panels_1.walls[min(uint(_e97), 0u)][min(uint(wall_3), 1u)];
+                        distance_10 = (is_wall_2 ? _e100 : _e95);
                     }
                 }
             }
-            bool _e104 = wanted_1;
-            bool _e108 = panels_1.lit_;
-            if ((_e104 & !(((kind_2 == VOL_IN_BEFORE) & _e108)))) {
-                float _e112 = distance_11;
-                vol_in_light_place(ray_33, _e112, scatter_3, source_2);
-                bool _e113 = lit_after;
-                lit_after = (_e113 | (kind_2 == VOL_IN_AFTER));
+            bool _e105 = wanted_1;
+            bool _e109 = panels_1.lit_;
+            if ((_e105 & !(((kind_2 == VOL_IN_BEFORE) & _e109)))) {
+                float _e113 = distance_10;
+                vol_in_light_place(ray_35, _e113, styled_2, scatter_3, source_2);
+                bool _e114 = lit_after;
+                lit_after = (_e114 | (kind_2 == VOL_IN_AFTER));
                 medium_14 = 0u;
                 uint2 loop_bound_43 = uint2(4294967295u, 4294967295u);
                 bool loop_init_42 = true;
@@ -4322,30 +4382,30 @@ bool vol_in_light_ends(Vol_in_Ray ray_33, float2 t_37, inout Vol_in_Panels panel
                     if (all(loop_bound_43 == uint2(0u, 0u))) { break; }
                     loop_bound_43 -= uint2(loop_bound_43.y == 0u, 1u);
                     if (!loop_init_42) {
-                        uint _e136 = medium_14;
-                        medium_14 = (_e136 + 1u);
+                        uint _e137 = medium_14;
+                        medium_14 = (_e137 + 1u);
                     }
                     loop_init_42 = false;
-                    uint _e119 = medium_14;
-                    if ((_e119 < VOL_IN_MEDIUM_COUNT)) {
+                    uint _e120 = medium_14;
+                    if ((_e120 < VOL_IN_MEDIUM_COUNT)) {
                     } else {
                         break;
                     }
                     {
-                        uint _e123 = medium_14;
-                        if ((!(is_wall_2) | (_e123 == owner))) {
-                            uint _e129 = medium_14;
-                            uint _e132 = medium_14;
-                            float3 _e134 = source_2[min(uint(_e132), 0u)];
-                            panels_1.sources[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e129)), 3u)] = _e134;
+                        uint _e124 = medium_14;
+                        if ((!(is_wall_2) | (_e124 == owner))) {
+                            uint _e130 = medium_14;
+                            uint _e133 = medium_14;
+                            float3 _e135 = source_2[min(uint(_e133), 0u)];
+                            panels_1.sources[min(uint(((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e130)), 3u)] = _e135;
                         }
                     }
                 }
             }
         }
     }
-    bool _e141 = lit_after;
-    return _e141;
+    bool _e142 = lit_after;
+    return _e142;
 }
 
 int naga_mod(int lhs, int rhs) {
@@ -4377,15 +4437,15 @@ Vol_in_Glow vol_in_gather(Vol_in_Glow before_7, int node_11, Vol_in_Chunk chunk)
     return vol_in_glow_1;
 }
 
-float3 vol_in_panel_sent(float2 masses_1, float3 start, float3 end_10, float3 depth_5)
+float3 vol_in_panel_sent(float2 masses_1, float3 start, float3 end_11, float3 depth_5)
 {
     const float3 _e4 = vol_in_mean_decay3_(depth_5);
     float3 steady = (start * _e4);
     const float3 _e7 = vol_in_decay_moment3_(depth_5);
-    float3 change = ((end_10 - start) * _e7);
+    float3 change = ((end_11 - start) * _e7);
     float3 thick = ((steady + change) * (masses_1.x + masses_1.y));
     const float3 _e16 = vol_in_decay3_(depth_5);
-    float3 thin = ((start * masses_1.x) + ((end_10 * _e16) * masses_1.y));
+    float3 thin = ((start * masses_1.x) + ((end_11 * _e16) * masses_1.y));
     float3 rise_4 = min(max(((depth_5 - (0.125).xxx) * 2.6666667), (0.0).xxx), (1.0).xxx);
     return (thin + ((thick - thin) * rise_4));
 }
@@ -4420,9 +4480,9 @@ float3 vol_in_panels_sent(inout Vol_in_Panels panels_2)
                 uint _e27 = medium_15;
                 float3 start_3 = panels_2.sources[min(uint(((ends_6.x * VOL_IN_MEDIUM_SLOTS) + _e27)), 3u)];
                 uint _e35 = medium_15;
-                float3 end_19 = panels_2.sources[min(uint(((ends_6.y * VOL_IN_MEDIUM_SLOTS) + _e35)), 3u)];
+                float3 end_20 = panels_2.sources[min(uint(((ends_6.y * VOL_IN_MEDIUM_SLOTS) + _e35)), 3u)];
                 float3 _e39 = sent;
-                const float3 _e40 = vol_in_panel_sent(masses_2, start_3, end_19, depth_8);
+                const float3 _e40 = vol_in_panel_sent(masses_2, start_3, end_20, depth_8);
                 sent = (_e39 + _e40);
             }
         }
@@ -4438,9 +4498,10 @@ Vol_in_Chunk ConstructVol_in_Chunk(float3 arg0, float3 arg1) {
     return ret;
 }
 
-Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_34, float end_11)
+Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_36, float end_12)
 {
     Vol_in_Glow glow_1 = (Vol_in_Glow)0;
+    Vol_in_StyledRays styled_3 = (Vol_in_StyledRays)0;
     Vol_in_Comb comb_10 = (Vol_in_Comb)0;
     Vol_in_Panels panels_3 = (Vol_in_Panels)0;
     int node_12 = (int)0;
@@ -4449,55 +4510,57 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_34, float end_11)
 
     const Vol_in_Glow _e2 = vol_in_clear_glow();
     glow_1 = _e2;
-    const float _e5 = vol_frame_word(VOL_IN_AT_STEP);
-    const Vol_in_Comb _e6 = vol_in_new_comb(ray_34, end_11, _e5);
-    comb_10 = _e6;
+    const Vol_in_StyledRays _e4 = vol_in_style_rays(ray_36, end_12);
+    styled_3 = _e4;
+    const float _e7 = vol_frame_word(VOL_IN_AT_STEP);
+    const Vol_in_Comb _e8 = vol_in_new_comb(ray_36, end_12, _e7);
+    comb_10 = _e8;
     panels_3.lit_ = false;
-    int _e12 = comb_10.first;
-    node_12 = asint(asuint(_e12) - asuint(int(1)));
+    int _e14 = comb_10.first;
+    node_12 = asint(asuint(_e14) - asuint(int(1)));
     uint2 loop_bound_45 = uint2(4294967295u, 4294967295u);
     bool loop_init_44 = true;
     while(true) {
         if (all(loop_bound_45 == uint2(0u, 0u))) { break; }
         loop_bound_45 -= uint2(loop_bound_45.y == 0u, 1u);
         if (!loop_init_44) {
-            int _e74 = node_12;
-            node_12 = asint(asuint(_e74) + asuint(int(1)));
+            int _e76 = node_12;
+            node_12 = asint(asuint(_e76) + asuint(int(1)));
         }
         loop_init_44 = false;
-        int _e16 = node_12;
-        int _e18 = comb_10.last;
-        if ((_e16 <= _e18)) {
+        int _e18 = node_12;
+        int _e20 = comb_10.last;
+        if ((_e18 <= _e20)) {
         } else {
             break;
         }
         {
-            int _e20 = node_12;
-            const float _e21 = vol_in_panel_node(comb_10, _e20);
             int _e22 = node_12;
-            const float _e25 = vol_in_panel_node(comb_10, asint(asuint(_e22) + asuint(int(1))));
-            float2 t_42 = float2(_e21, _e25);
-            int _e27 = node_12;
-            vol_in_find_panels(ray_34, comb_10, _e27, t_42, panels_3);
+            const float _e23 = vol_in_panel_node(comb_10, _e22);
+            int _e24 = node_12;
+            const float _e27 = vol_in_panel_node(comb_10, asint(asuint(_e24) + asuint(int(1))));
+            float2 t_43 = float2(_e23, _e27);
+            int _e29 = node_12;
+            vol_in_find_panels(ray_36, comb_10, _e29, t_43, panels_3);
             lit_after_1 = false;
-            bool _e31 = panels_3.some;
-            if (_e31) {
-                const bool _e32 = vol_in_light_ends(ray_34, t_42, panels_3);
-                lit_after_1 = _e32;
-                Vol_in_Glow _e33 = glow_1;
-                int _e34 = node_12;
-                const float3 _e35 = vol_in_panels_sent(panels_3);
-                float3 _e37 = panels_3.depth;
-                const Vol_in_Glow _e39 = vol_in_gather(_e33, _e34, ConstructVol_in_Chunk(_e35, _e37));
-                glow_1 = _e39;
+            bool _e33 = panels_3.some;
+            if (_e33) {
+                const bool _e34 = vol_in_light_ends(ray_36, t_43, styled_3, panels_3);
+                lit_after_1 = _e34;
+                Vol_in_Glow _e35 = glow_1;
+                int _e36 = node_12;
+                const float3 _e37 = vol_in_panels_sent(panels_3);
+                float3 _e39 = panels_3.depth;
+                const Vol_in_Glow _e41 = vol_in_gather(_e35, _e36, ConstructVol_in_Chunk(_e37, _e39));
+                glow_1 = _e41;
             }
-            float3 _e41 = glow_1.transmittance;
-            const float _e42 = vol_in_largest(_e41);
-            if ((_e42 < VOL_IN_STOP)) {
+            float3 _e43 = glow_1.transmittance;
+            const float _e44 = vol_in_largest(_e43);
+            if ((_e44 < VOL_IN_STOP)) {
                 break;
             }
-            bool _e46 = lit_after_1;
-            panels_3.lit_ = _e46;
+            bool _e48 = lit_after_1;
+            panels_3.lit_ = _e48;
             medium_16 = 0u;
             uint2 loop_bound_46 = uint2(4294967295u, 4294967295u);
             bool loop_init_45 = true;
@@ -4505,34 +4568,34 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_34, float end_11)
                 if (all(loop_bound_46 == uint2(0u, 0u))) { break; }
                 loop_bound_46 -= uint2(loop_bound_46.y == 0u, 1u);
                 if (!loop_init_45) {
-                    uint _e71 = medium_16;
-                    medium_16 = (_e71 + 1u);
+                    uint _e73 = medium_16;
+                    medium_16 = (_e73 + 1u);
                 }
                 loop_init_45 = false;
-                uint _e49 = medium_16;
-                if ((_e49 < VOL_IN_MEDIUM_COUNT)) {
+                uint _e51 = medium_16;
+                if ((_e51 < VOL_IN_MEDIUM_COUNT)) {
                 } else {
                     break;
                 }
                 {
-                    uint _e53 = medium_16;
-                    uint _e57 = medium_16;
-                    Vol_in_Interior _e60 = panels_3.interiors[min(uint((VOL_IN_MEDIUM_SLOTS + _e57)), 3u)];
-                    panels_3.interiors[min(uint(_e53), 3u)] = _e60;
-                    uint _e62 = medium_16;
-                    uint _e66 = medium_16;
-                    float3 _e69 = panels_3.sources[min(uint((VOL_IN_MEDIUM_SLOTS + _e66)), 3u)];
-                    panels_3.sources[min(uint(_e62), 3u)] = _e69;
+                    uint _e55 = medium_16;
+                    uint _e59 = medium_16;
+                    Vol_in_Interior _e62 = panels_3.interiors[min(uint((VOL_IN_MEDIUM_SLOTS + _e59)), 3u)];
+                    panels_3.interiors[min(uint(_e55), 3u)] = _e62;
+                    uint _e64 = medium_16;
+                    uint _e68 = medium_16;
+                    float3 _e71 = panels_3.sources[min(uint((VOL_IN_MEDIUM_SLOTS + _e68)), 3u)];
+                    panels_3.sources[min(uint(_e64), 3u)] = _e71;
                 }
             }
         }
     }
-    Vol_in_Glow _e76 = glow_1;
-    const Vol_in_Glow vol_in_glow_2 = _e76;
+    Vol_in_Glow _e78 = glow_1;
+    const Vol_in_Glow vol_in_glow_2 = _e78;
     return vol_in_glow_2;
 }
 
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_35, float t_38, inout float weights_4[1])
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_37, float t_39, inout Vol_in_StyledRays styled_4, inout float weights_4[1])
 {
     float3 depth_6 = (0.0).xxx;
     float3 scatter_4[1] = (float3[1])0;
@@ -4541,137 +4604,140 @@ Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_35, float t_38, inout float weight
     float3 sent_1 = (0.0).xxx;
     uint medium_18 = 0u;
 
-    const float3 _e3 = vol_in_ray_at(ray_35, t_38);
+    const float3 _e4 = vol_in_ray_at(ray_37, t_39);
     uint2 loop_bound_47 = uint2(4294967295u, 4294967295u);
     bool loop_init_46 = true;
     while(true) {
         if (all(loop_bound_47 == uint2(0u, 0u))) { break; }
         loop_bound_47 -= uint2(loop_bound_47.y == 0u, 1u);
         if (!loop_init_46) {
-            uint _e46 = medium_17;
-            medium_17 = (_e46 + 1u);
+            uint _e47 = medium_17;
+            medium_17 = (_e47 + 1u);
         }
         loop_init_46 = false;
-        uint _e11 = medium_17;
-        if ((_e11 < VOL_IN_MEDIUM_COUNT)) {
+        uint _e12 = medium_17;
+        if ((_e12 < VOL_IN_MEDIUM_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e14 = medium_17;
-            float weight_2 = weights_4[min(uint(_e14), 0u)];
-            uint _e17 = medium_17;
-            scatter_4[min(uint(_e17), 0u)] = (0.0).xxx;
-            uint _e21 = medium_17;
-            source_3[min(uint(_e21), 0u)] = (0.0).xxx;
+            uint _e15 = medium_17;
+            float weight_2 = weights_4[min(uint(_e15), 0u)];
+            uint _e18 = medium_17;
+            scatter_4[min(uint(_e18), 0u)] = (0.0).xxx;
+            uint _e22 = medium_17;
+            source_3[min(uint(_e22), 0u)] = (0.0).xxx;
             if ((weight_2 > 0.0)) {
-                uint _e27 = medium_17;
-                const Vol_in_Interior _e28 = vol_in_medium_interior(_e27, _e3);
-                float mass_1 = (max(_e28.density, 0.0) * weight_2);
-                float3 _e33 = depth_6;
-                depth_6 = (_e33 + (_e28.extinction * mass_1));
-                uint _e37 = medium_17;
-                scatter_4[min(uint(_e37), 0u)] = (_e28.scattering * mass_1);
-                uint _e41 = medium_17;
-                source_3[min(uint(_e41), 0u)] = (_e28.emission * mass_1);
+                uint _e28 = medium_17;
+                const Vol_in_Interior _e29 = vol_in_medium_interior(_e28, _e4);
+                float mass_1 = (max(_e29.density, 0.0) * weight_2);
+                float3 _e34 = depth_6;
+                depth_6 = (_e34 + (_e29.extinction * mass_1));
+                uint _e38 = medium_17;
+                scatter_4[min(uint(_e38), 0u)] = (_e29.scattering * mass_1);
+                uint _e42 = medium_17;
+                source_3[min(uint(_e42), 0u)] = (_e29.emission * mass_1);
             }
         }
     }
-    vol_in_light_place(ray_35, t_38, scatter_4, source_3);
+    vol_in_light_place(ray_37, t_39, styled_4, scatter_4, source_3);
     uint2 loop_bound_48 = uint2(4294967295u, 4294967295u);
     bool loop_init_47 = true;
     while(true) {
         if (all(loop_bound_48 == uint2(0u, 0u))) { break; }
         loop_bound_48 -= uint2(loop_bound_48.y == 0u, 1u);
         if (!loop_init_47) {
-            uint _e65 = medium_18;
-            medium_18 = (_e65 + 1u);
+            uint _e66 = medium_18;
+            medium_18 = (_e66 + 1u);
         }
         loop_init_47 = false;
-        uint _e53 = medium_18;
-        if ((_e53 < VOL_IN_MEDIUM_COUNT)) {
+        uint _e54 = medium_18;
+        if ((_e54 < VOL_IN_MEDIUM_COUNT)) {
         } else {
             break;
         }
         {
-            float3 _e56 = sent_1;
-            uint _e57 = medium_18;
-            float3 _e59 = source_3[min(uint(_e57), 0u)];
-            float3 _e60 = depth_6;
-            const float3 _e61 = vol_in_mean_decay3_(_e60);
-            sent_1 = (_e56 + (_e59 * _e61));
+            float3 _e57 = sent_1;
+            uint _e58 = medium_18;
+            float3 _e60 = source_3[min(uint(_e58), 0u)];
+            float3 _e61 = depth_6;
+            const float3 _e62 = vol_in_mean_decay3_(_e61);
+            sent_1 = (_e57 + (_e60 * _e62));
         }
     }
-    float3 _e67 = sent_1;
-    float3 _e68 = depth_6;
-    const Vol_in_Chunk vol_in_chunk = ConstructVol_in_Chunk(_e67, _e68);
+    float3 _e68 = sent_1;
+    float3 _e69 = depth_6;
+    const Vol_in_Chunk vol_in_chunk = ConstructVol_in_Chunk(_e68, _e69);
     return vol_in_chunk;
 }
 
-Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_36, float end_12)
+Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_38, float end_13)
 {
     Vol_in_Glow glow_2 = (Vol_in_Glow)0;
+    Vol_in_StyledRays styled_5 = (Vol_in_StyledRays)0;
     Vol_in_Comb comb_11 = (Vol_in_Comb)0;
     float weights_5[1] = (float[1])0;
     int node_13 = (int)0;
 
     const Vol_in_Glow _e2 = vol_in_clear_glow();
     glow_2 = _e2;
-    const float _e5 = vol_frame_word(VOL_IN_AT_STEP);
-    const Vol_in_Comb _e6 = vol_in_new_comb(ray_36, end_12, _e5);
-    comb_11 = _e6;
-    int _e10 = comb_11.first;
-    node_13 = asint(asuint(_e10) - asuint(int(2)));
+    const Vol_in_StyledRays _e4 = vol_in_style_rays(ray_38, end_13);
+    styled_5 = _e4;
+    const float _e7 = vol_frame_word(VOL_IN_AT_STEP);
+    const Vol_in_Comb _e8 = vol_in_new_comb(ray_38, end_13, _e7);
+    comb_11 = _e8;
+    int _e12 = comb_11.first;
+    node_13 = asint(asuint(_e12) - asuint(int(2)));
     uint2 loop_bound_49 = uint2(4294967295u, 4294967295u);
     bool loop_init_48 = true;
     while(true) {
         if (all(loop_bound_49 == uint2(0u, 0u))) { break; }
         loop_bound_49 -= uint2(loop_bound_49.y == 0u, 1u);
         if (!loop_init_48) {
-            int _e36 = node_13;
-            node_13 = asint(asuint(_e36) + asuint(int(1)));
+            int _e38 = node_13;
+            node_13 = asint(asuint(_e38) + asuint(int(1)));
         }
         loop_init_48 = false;
-        int _e14 = node_13;
-        int _e16 = comb_11.last;
-        if ((_e14 <= _e16)) {
+        int _e16 = node_13;
+        int _e18 = comb_11.last;
+        if ((_e16 <= _e18)) {
         } else {
             break;
         }
         {
-            int _e18 = node_13;
-            const bool _e19 = vol_in_weigh(ray_36, comb_11, _e18, weights_5);
-            if (_e19) {
-                Vol_in_Glow _e20 = glow_2;
-                int _e21 = node_13;
-                int _e22 = node_13;
-                float _e24 = comb_11.step_;
-                float _e26 = comb_11.offset;
-                const float _e27 = vol_in_node_distance(_e22, _e24, _e26);
-                const Vol_in_Chunk _e28 = vol_in_node_chunk(ray_36, _e27, weights_5);
-                const Vol_in_Glow _e29 = vol_in_gather(_e20, _e21, _e28);
-                glow_2 = _e29;
+            int _e20 = node_13;
+            const bool _e21 = vol_in_weigh(ray_38, comb_11, _e20, weights_5);
+            if (_e21) {
+                Vol_in_Glow _e22 = glow_2;
+                int _e23 = node_13;
+                int _e24 = node_13;
+                float _e26 = comb_11.step_;
+                float _e28 = comb_11.offset;
+                const float _e29 = vol_in_node_distance(_e24, _e26, _e28);
+                const Vol_in_Chunk _e30 = vol_in_node_chunk(ray_38, _e29, styled_5, weights_5);
+                const Vol_in_Glow _e31 = vol_in_gather(_e22, _e23, _e30);
+                glow_2 = _e31;
             }
-            float3 _e31 = glow_2.transmittance;
-            const float _e32 = vol_in_largest(_e31);
-            if ((_e32 < VOL_IN_STOP)) {
+            float3 _e33 = glow_2.transmittance;
+            const float _e34 = vol_in_largest(_e33);
+            if ((_e34 < VOL_IN_STOP)) {
                 break;
             }
         }
     }
-    Vol_in_Glow _e38 = glow_2;
-    const Vol_in_Glow vol_in_glow_3 = _e38;
+    Vol_in_Glow _e40 = glow_2;
+    const Vol_in_Glow vol_in_glow_3 = _e40;
     return vol_in_glow_3;
 }
 
-Vol_in_Glow vol_in_march(Vol_in_Ray ray_37, float end_13)
+Vol_in_Glow vol_in_march(Vol_in_Ray ray_39, float end_14)
 {
     if (VOL_IN_CORRECTED) {
-        const Vol_in_Glow _e3 = vol_in_march_panels(ray_37, end_13);
+        const Vol_in_Glow _e3 = vol_in_march_panels(ray_39, end_14);
         const Vol_in_Glow vol_in_glow_4 = _e3;
         return vol_in_glow_4;
     }
-    const Vol_in_Glow _e4 = vol_in_march_nodes(ray_37, end_13);
+    const Vol_in_Glow _e4 = vol_in_march_nodes(ray_39, end_14);
     const Vol_in_Glow vol_in_glow_5 = _e4;
     return vol_in_glow_5;
 }
@@ -4685,25 +4751,25 @@ Vol_in_Radiance ConstructVol_in_Radiance(float3 arg0, float3 arg1, float arg2, f
     return ret;
 }
 
-Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_38)
+Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_40)
 {
     float3 behind = (float3)0;
-    float end_14 = VOL_IN_FAR;
+    float end_15 = VOL_IN_FAR;
     float depth_7 = VOL_IN_NO_DEPTH;
 
-    const Vol_in_Contact _e1 = vol_in_trace(ray_38);
+    const Vol_in_Contact _e1 = vol_in_trace(ray_40);
     const float3 _e3 = vol_in_word3_(VOL_IN_AT_BACKGROUND);
     behind = _e3;
     if (_e1.hit) {
-        const float3 _e10 = vol_in_shade(ray_38, _e1);
+        const float3 _e10 = vol_in_shade(ray_40, _e1);
         behind = _e10;
-        end_14 = _e1.t;
+        end_15 = _e1.t;
         const float3 _e15 = vol_in_word3_(VOL_IN_AT_FORWARD);
-        const float _e16 = vol_in_dot3_(ray_38.direction, _e15);
+        const float _e16 = vol_in_dot3_(ray_40.direction, _e15);
         depth_7 = (_e1.t * _e16);
     }
-    float _e18 = end_14;
-    const Vol_in_Glow _e19 = vol_in_march(ray_38, _e18);
+    float _e18 = end_15;
+    const Vol_in_Glow _e19 = vol_in_march(ray_40, _e18);
     float3 _e22 = behind;
     float3 coarse = (_e19.coarse_light + (_e19.coarse_transmittance * _e22));
     float3 _e27 = behind;
@@ -4749,16 +4815,16 @@ float vol_in_comb_shift(uint2 pixel, uint index_20)
 
 Vol_in_Ray vol_in_pixel_ray(uint2 pixel_1, uint index_21, uint corner)
 {
-    Vol_in_Ray ray_39 = (Vol_in_Ray)0;
+    Vol_in_Ray ray_41 = (Vol_in_Ray)0;
 
     bool is_probe = (corner < VOL_IN_NO_CORNER);
     const float2 _e5 = vol_in_place_in_pixel(index_21);
     float2 aside_2 = (is_probe ? float2(uint2(naga_mod(corner, 2u), naga_div(corner, 2u))) : _e5);
     const Vol_in_Ray _e15 = vol_in_camera_ray((float2(pixel_1) + aside_2));
-    ray_39 = _e15;
+    ray_41 = _e15;
     const float _e18 = vol_in_comb_shift(pixel_1, index_21);
-    ray_39.shift = (is_probe ? 0.0 : _e18);
-    Vol_in_Ray _e21 = ray_39;
+    ray_41.shift = (is_probe ? 0.0 : _e18);
+    Vol_in_Ray _e21 = ray_41;
     const Vol_in_Ray vol_in_ray_3 = _e21;
     return vol_in_ray_3;
 }
@@ -4829,16 +4895,16 @@ Vol_in_Mean vol_in_add_sample(Vol_in_Mean old_1, Vol_in_Radiance sample_)
 
 bool vol_in_is_probed()
 {
-    bool local_9 = (bool)0;
+    bool local_11 = (bool)0;
 
     const float _e1 = vol_frame_word(VOL_IN_AT_TOLERANCE);
     if ((_e1 > 0.0)) {
         const float _e7 = vol_frame_word(VOL_IN_AT_SAMPLES);
-        local_9 = (naga_f2u32(_e7) > VOL_IN_FIRST_ROUND);
+        local_11 = (naga_f2u32(_e7) > VOL_IN_FIRST_ROUND);
     } else {
-        local_9 = false;
+        local_11 = false;
     }
-    bool _e12 = local_9;
+    bool _e12 = local_11;
     return _e12;
 }
 
@@ -4846,9 +4912,9 @@ Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_8, uint last_4
 {
     Vol_in_Mean mean_4 = (Vol_in_Mean)0;
     uint corner_1 = VOL_IN_NO_CORNER;
-    bool local_10 = (bool)0;
-    bool local_11 = (bool)0;
     bool local_12 = (bool)0;
+    bool local_13 = (bool)0;
+    bool local_14 = (bool)0;
 
     mean_4 = before_8;
     uint2 loop_bound_50 = uint2(4294967295u, 4294967295u);
@@ -4861,16 +4927,16 @@ Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_8, uint last_4
             if ((_e13 < last_4)) {
                 Vol_in_Mean _e17 = mean_4;
                 const bool _e18 = vol_in_is_done(_e17);
-                local_11 = !(_e18);
+                local_13 = !(_e18);
             } else {
-                local_11 = false;
+                local_13 = false;
             }
-            bool _e21 = local_11;
-            local_10 = _e21;
+            bool _e21 = local_13;
+            local_12 = _e21;
         } else {
-            local_10 = true;
+            local_12 = true;
         }
-        bool _e23 = local_10;
+        bool _e23 = local_12;
         if (_e23) {
         } else {
             break;
@@ -4895,11 +4961,11 @@ Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_8, uint last_4
                 const bool _e41 = vol_in_is_probed();
                 if (_e41) {
                     uint _e45 = mean_4.count;
-                    local_12 = (_e45 == VOL_IN_FIRST_ROUND);
+                    local_14 = (_e45 == VOL_IN_FIRST_ROUND);
                 } else {
-                    local_12 = false;
+                    local_14 = false;
                 }
-                bool _e49 = local_12;
+                bool _e49 = local_14;
                 corner_1 = (_e49 ? 0u : VOL_IN_NO_CORNER);
             }
         }
@@ -4933,8 +4999,8 @@ float4 vol_radiance(float3 origin_1, float3 direction_4)
     const float _e2 = vol_in_length3_(direction_4);
     const Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / (_e2).xxx));
     const Vol_in_Radiance _e6 = vol_in_radiance(_e5);
-    float3 t_43 = _e6.transmittance;
-    float clear_3 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
+    float3 t_44 = _e6.transmittance;
+    float clear_3 = (((t_44.x + t_44.y) + t_44.z) * 0.33333334);
     return float4(_e6.color, (1.0 - clear_3));
 }
 
@@ -4942,8 +5008,8 @@ float4 vol_pixel(float2 place_4)
 {
     const Vol_in_Ray _e1 = vol_in_camera_ray(place_4);
     const Vol_in_Radiance _e2 = vol_in_radiance(_e1);
-    float3 t_44 = _e2.transmittance;
-    float clear_4 = (((t_44.x + t_44.y) + t_44.z) * 0.33333334);
+    float3 t_45 = _e2.transmittance;
+    float clear_4 = (((t_45.x + t_45.y) + t_45.z) * 0.33333334);
     return float4(_e2.color, (1.0 - clear_4));
 }
 

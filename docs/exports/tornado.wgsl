@@ -1306,10 +1306,12 @@ const VOL_IN_OBJECT_COUNT: u32 = 0u;
 const VOL_IN_MEDIUM_COUNT: u32 = 1u;
 const VOL_IN_OBJECT_SLOTS: u32 = 1u;
 const VOL_IN_MEDIUM_SLOTS: u32 = 1u;
+const VOL_IN_LIGHT_SLOTS: u32 = 1u;
+const VOL_IN_TRANSFER_SIZE: u32 = 256u;
 const VOL_IN_OBJECT_WORDS: u32 = 8u;
 const VOL_IN_MEDIUM_WORDS: u32 = 9u;
 const VOL_IN_CELL_WORDS: u32 = 6u;
-const VOL_IN_LIGHT_WORDS: u32 = 11u;
+const VOL_IN_LIGHT_WORDS: u32 = 12u;
 const VOL_IN_PIXEL_WORDS: u32 = 15u;
 const VOL_IN_AT_OBJECTS: u32 = 27u;
 const VOL_IN_AT_MEDIA: u32 = 27u;
@@ -1318,6 +1320,8 @@ const VOL_IN_CORRECTED: bool = true;
 const VOL_IN_SOFT_LIGHTS: bool = false;
 const VOL_IN_OCCLUDING_LIGHTS: bool = false;
 const VOL_IN_LIGHT_GRIDS: bool = true;
+const VOL_IN_STYLES: bool = false;
+const VOL_IN_MARCHED_SHAFTS: bool = false;
 
 fn vol_in_object_distance(index: u32, p: vec3f) -> f32 {
     switch index {
@@ -1988,6 +1992,8 @@ struct Vol_in_Arriving {
     slope: f32,
     // Word of the light's grid, 0 for none.
     grid: u32,
+    // Word of its style's record, 0 for none.
+    style: u32,
 }
 
 fn vol_in_light_count() -> u32 {
@@ -2008,7 +2014,8 @@ fn vol_in_arriving(light: u32, point: vec3f) -> Vol_in_Arriving {
     let size = vol_frame_word(at + 8u);
     let slope = select(min(size / distance, VOL_IN_MAX_SPREAD_TANGENT), size, distant);
     let grid = u32(vol_frame_word(at + 10u));
-    return Vol_in_Arriving(direction, select(distance, VOL_IN_FAR, distant), irradiance, shadows, slope, grid);
+    let style = u32(vol_frame_word(at + 11u));
+    return Vol_in_Arriving(direction, select(distance, VOL_IN_FAR, distant), irradiance, shadows, slope, grid, style);
 }
 
 // Radiance that leaves a contact towards the eye.
@@ -2058,11 +2065,6 @@ fn vol_in_answer(response: Vol_in_Response, contact: Vol_in_Contact, lamp: Vol_i
 
 // How much of a light arrives at a point: solids between hide it, media between weaken it.
 // Twin: runtime-cpu/src/render/shadow.rs, which says why.
-
-// Fraction of the light that arrives, per channel.
-fn vol_in_visibility(ray: Vol_in_Ray, distance: f32, bias: f32, grid: u32) -> vec3f {
-    return vol_in_through_media(ray, distance, vol_in_unblocked(ray, distance, bias), grid);
-}
 
 // Fraction of a light with a slope that arrives, per channel.
 fn vol_in_soft_visibility(ray: Vol_in_Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
@@ -2868,6 +2870,7 @@ fn vol_in_panel_masses(step_size: f32, length: f32, ends: vec2f, open: vec2<bool
 fn vol_in_light_place(
     ray: Vol_in_Ray,
     t: f32,
+    styled: ptr<function, Vol_in_StyledRays>,
     scatter: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>,
     source: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>,
 ) {
@@ -2875,20 +2878,37 @@ fn vol_in_light_place(
     let count = vol_in_light_count();
     for (var light = 0u; light < count; light++) {
         let lamp = vol_in_arriving(light, point);
-        let seen = vol_in_place_visibility(lamp, point, t, scatter);
+        var seen = vol_in_place_visibility(lamp, light, styled, ray, t, scatter);
+        if (VOL_IN_STYLES && (lamp.style != 0u)) {
+            seen = seen * vol_in_styled_tint(lamp, light, styled, point);
+        }
         vol_in_scatter_light(lamp, seen, ray.direction, scatter, source);
     }
 }
 
 // Fraction of a lamp's light that arrives at a place, if a medium needs to know.
-fn vol_in_place_visibility(lamp: Vol_in_Arriving, point: vec3f, t: f32, scatter: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>) -> vec3f {
+fn vol_in_place_visibility(
+    lamp: Vol_in_Arriving,
+    light: u32,
+    styled: ptr<function, Vol_in_StyledRays>,
+    ray: Vol_in_Ray,
+    t: f32,
+    scatter: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>,
+) -> vec3f {
     var asked = false;
     for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
         let scatters = any((*scatter)[medium] > vec3f(0.0));
         asked = asked | (scatters & (vol_frame_word(vol_in_medium_word(medium)) == VOL_IN_SHADOWED));
     }
     if (asked & lamp.shadows) {
-        return vol_in_visibility(vol_in_new_ray(point, lamp.direction), lamp.distance, vol_in_shadow_bias(t), lamp.grid);
+        let toward = vol_in_new_ray(vol_in_ray_at(ray, t), lamp.direction);
+        var part = 1.0;
+        if (VOL_IN_STYLES && (lamp.style != 0u)) {
+            part = vol_in_styled_share(lamp, light, styled, ray, t);
+        } else {
+            part = vol_in_unblocked(toward, lamp.distance, vol_in_shadow_bias(t));
+        }
+        return vol_in_through_media(toward, lamp.distance, part, lamp.grid);
     }
     return vec3f(1.0);
 }
@@ -2954,6 +2974,7 @@ struct Vol_in_Panels {
 
 fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     var glow = vol_in_clear_glow();
+    var styled = vol_in_style_rays(ray, end);
     var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
     var panels: Vol_in_Panels;
     panels.lit = false;
@@ -2963,7 +2984,7 @@ fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
         vol_in_find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = vol_in_light_ends(ray, t, &panels);
+            lit_after = vol_in_light_ends(ray, t, &styled, &panels);
             glow = vol_in_gather(glow, node, Vol_in_Chunk(vol_in_panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -3019,7 +3040,7 @@ fn vol_in_find_panels(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i
 }
 
 // Lights the ends of panels with matter; whether those at the node after are among them.
-fn vol_in_light_ends(ray: Vol_in_Ray, t: vec2f, panels: ptr<function, Vol_in_Panels>) -> bool {
+fn vol_in_light_ends(ray: Vol_in_Ray, t: vec2f, styled: ptr<function, Vol_in_StyledRays>, panels: ptr<function, Vol_in_Panels>) -> bool {
     var lit_after = false;
     for (var place = 0u; place < (VOL_IN_WALL + (VOL_IN_MOST_WALLS * VOL_IN_MEDIUM_COUNT)); place++) {
         // Media share nodes; each has walls of its own.
@@ -3046,7 +3067,7 @@ fn vol_in_light_ends(ray: Vol_in_Ray, t: vec2f, panels: ptr<function, Vol_in_Pan
             }
         }
         if (wanted & !((kind == VOL_IN_BEFORE) & (*panels).lit)) {
-            vol_in_light_place(ray, distance, &scatter, &source);
+            vol_in_light_place(ray, distance, styled, &scatter, &source);
             lit_after = lit_after | (kind == VOL_IN_AFTER);
             for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
                 if (!is_wall | (medium == owner)) {
@@ -3117,11 +3138,12 @@ fn vol_in_clear_glow() -> Vol_in_Glow {
 
 fn vol_in_march_nodes(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     var glow = vol_in_clear_glow();
+    var styled = vol_in_style_rays(ray, end);
     var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
     var weights: array<f32, VOL_IN_MEDIUM_SLOTS>;
     for (var node = comb.first - 2; node <= comb.last; node++) {
         if (vol_in_weigh(ray, &comb, node, &weights)) {
-            glow = vol_in_gather(glow, node, vol_in_node_chunk(ray, vol_in_node_distance(node, comb.step, comb.offset), &weights));
+            glow = vol_in_gather(glow, node, vol_in_node_chunk(ray, vol_in_node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
         // Go on while the ray still lets light through.
         if (vol_in_largest(glow.transmittance) < VOL_IN_STOP) {
@@ -3138,7 +3160,12 @@ struct Vol_in_Chunk {
 }
 
 // Light and optical depth of one node.
-fn vol_in_node_chunk(ray: Vol_in_Ray, t: f32, weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>) -> Vol_in_Chunk {
+fn vol_in_node_chunk(
+    ray: Vol_in_Ray,
+    t: f32,
+    styled: ptr<function, Vol_in_StyledRays>,
+    weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>,
+) -> Vol_in_Chunk {
     let point = vol_in_ray_at(ray, t);
     var depth = vec3f(0.0);
     var scatter: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
@@ -3155,7 +3182,7 @@ fn vol_in_node_chunk(ray: Vol_in_Ray, t: f32, weights: ptr<function, array<f32, 
             source[medium] = interior.emission * mass;
         }
     }
-    vol_in_light_place(ray, t, &scatter, &source);
+    vol_in_light_place(ray, t, styled, &scatter, &source);
     // Add up what they send.
     var sent = vec3f(0.0);
     for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
@@ -3177,6 +3204,24 @@ fn vol_in_gather(before: Vol_in_Glow, node: i32, chunk: Vol_in_Chunk) -> Vol_in_
         glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
     }
     return glow;
+}
+
+// A scene without styles; see styled.wgsl.
+
+struct Vol_in_StyledRays {
+    none: f32,
+}
+
+fn vol_in_style_rays(ray: Vol_in_Ray, end: f32) -> Vol_in_StyledRays {
+    return Vol_in_StyledRays(0.0);
+}
+
+fn vol_in_styled_share(lamp: Vol_in_Arriving, light: u32, rays: ptr<function, Vol_in_StyledRays>, ray: Vol_in_Ray, t: f32) -> f32 {
+    return 1.0;
+}
+
+fn vol_in_styled_tint(lamp: Vol_in_Arriving, light: u32, rays: ptr<function, Vol_in_StyledRays>, point: vec3f) -> vec3f {
+    return vec3f(1.0);
 }
 
 // ---- to be called -------------------------------------------------------------

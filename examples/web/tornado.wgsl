@@ -1153,10 +1153,12 @@ const OBJECT_COUNT: u32 = 0u;
 const MEDIUM_COUNT: u32 = 1u;
 const OBJECT_SLOTS: u32 = 1u;
 const MEDIUM_SLOTS: u32 = 1u;
+const LIGHT_SLOTS: u32 = 1u;
+const TRANSFER_SIZE: u32 = 256u;
 const OBJECT_WORDS: u32 = 8u;
 const MEDIUM_WORDS: u32 = 9u;
 const CELL_WORDS: u32 = 6u;
-const LIGHT_WORDS: u32 = 11u;
+const LIGHT_WORDS: u32 = 12u;
 const PIXEL_WORDS: u32 = 15u;
 const AT_OBJECTS: u32 = 27u;
 const AT_MEDIA: u32 = 27u;
@@ -1165,6 +1167,8 @@ const CORRECTED: bool = true;
 const SOFT_LIGHTS: bool = false;
 const OCCLUDING_LIGHTS: bool = false;
 const LIGHT_GRIDS: bool = true;
+const STYLES: bool = false;
+const MARCHED_SHAFTS: bool = false;
 
 fn object_distance(index: u32, p: vec3f) -> f32 {
     counted_evaluations += 1u;
@@ -1849,6 +1853,8 @@ struct Arriving {
     slope: f32,
     // Word of the light's grid, 0 for none.
     grid: u32,
+    // Word of its style's record, 0 for none.
+    style: u32,
 }
 
 fn light_count() -> u32 {
@@ -1869,7 +1875,8 @@ fn arriving(light: u32, point: vec3f) -> Arriving {
     let size = vol_frame_word(at + 8u);
     let slope = select(min(size / distance, MAX_SPREAD_TANGENT), size, distant);
     let grid = u32(vol_frame_word(at + 10u));
-    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid);
+    let style = u32(vol_frame_word(at + 11u));
+    return Arriving(direction, select(distance, FAR, distant), irradiance, shadows, slope, grid, style);
 }
 
 // Radiance that leaves a contact towards the eye.
@@ -1919,11 +1926,6 @@ fn answer(response: Response, contact: Contact, lamp: Arriving, cosine: f32, dir
 
 // How much of a light arrives at a point: solids between hide it, media between weaken it.
 // Twin: runtime-cpu/src/render/shadow.rs, which says why.
-
-// Fraction of the light that arrives, per channel.
-fn visibility(ray: Ray, distance: f32, bias: f32, grid: u32) -> vec3f {
-    return through_media(ray, distance, unblocked(ray, distance, bias), grid);
-}
 
 // Fraction of a light with a slope that arrives, per channel.
 fn soft_visibility(ray: Ray, distance: f32, bias: f32, slope: f32, grid: u32) -> vec3f {
@@ -2731,6 +2733,7 @@ fn panel_masses(step_size: f32, length: f32, ends: vec2f, open: vec2<bool>) -> v
 fn light_place(
     ray: Ray,
     t: f32,
+    styled: ptr<function, StyledRays>,
     scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
     source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
 ) {
@@ -2738,20 +2741,38 @@ fn light_place(
     let count = light_count();
     for (var light = 0u; light < count; light++) {
         let lamp = arriving(light, point);
-        let seen = place_visibility(lamp, point, t, scatter);
+        var seen = place_visibility(lamp, light, styled, ray, t, scatter);
+        if (STYLES && (lamp.style != 0u)) {
+            seen = seen * styled_tint(lamp, light, styled, point);
+        }
         scatter_light(lamp, seen, ray.direction, scatter, source);
     }
 }
 
 // Fraction of a lamp's light that arrives at a place, if a medium needs to know.
-fn place_visibility(lamp: Arriving, point: vec3f, t: f32, scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>) -> vec3f {
+fn place_visibility(
+    lamp: Arriving,
+    light: u32,
+    styled: ptr<function, StyledRays>,
+    ray: Ray,
+    t: f32,
+    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+) -> vec3f {
     var asked = false;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let scatters = any((*scatter)[medium] > vec3f(0.0));
         asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
     }
     if (asked & lamp.shadows) {
-        return visibility(new_ray(point, lamp.direction), lamp.distance, shadow_bias(t), lamp.grid);
+        let toward = new_ray(ray_at(ray, t), lamp.direction);
+        var part = 1.0;
+        if (STYLES && (lamp.style != 0u)) {
+            counted_rays += 1u;
+            part = styled_share(lamp, light, styled, ray, t);
+        } else {
+            part = unblocked(toward, lamp.distance, shadow_bias(t));
+        }
+        return through_media(toward, lamp.distance, part, lamp.grid);
     }
     return vec3f(1.0);
 }
@@ -2817,6 +2838,7 @@ struct Panels {
 
 fn march_panels(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
+    var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var panels: Panels;
     panels.lit = false;
@@ -2826,7 +2848,7 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = light_ends(ray, t, &panels);
+            lit_after = light_ends(ray, t, &styled, &panels);
             glow = gather(glow, node, Chunk(panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -2882,7 +2904,7 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
 }
 
 // Lights the ends of panels with matter; whether those at the node after are among them.
-fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
+fn light_ends(ray: Ray, t: vec2f, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
     var lit_after = false;
     for (var place = 0u; place < (WALL + (MOST_WALLS * MEDIUM_COUNT)); place++) {
         // Media share nodes; each has walls of its own.
@@ -2909,7 +2931,7 @@ fn light_ends(ray: Ray, t: vec2f, panels: ptr<function, Panels>) -> bool {
             }
         }
         if (wanted & !((kind == BEFORE) & (*panels).lit)) {
-            light_place(ray, distance, &scatter, &source);
+            light_place(ray, distance, styled, &scatter, &source);
             lit_after = lit_after | (kind == AFTER);
             for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
                 if (!is_wall | (medium == owner)) {
@@ -2980,11 +3002,12 @@ fn clear_glow() -> Glow {
 
 fn march_nodes(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
+    var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     for (var node = comb.first - 2; node <= comb.last; node++) {
         if (weigh(ray, &comb, node, &weights)) {
-            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &weights));
+            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
         // Go on while the ray still lets light through.
         if (largest(glow.transmittance) < STOP) {
@@ -3001,7 +3024,12 @@ struct Chunk {
 }
 
 // Light and optical depth of one node.
-fn node_chunk(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> Chunk {
+fn node_chunk(
+    ray: Ray,
+    t: f32,
+    styled: ptr<function, StyledRays>,
+    weights: ptr<function, array<f32, MEDIUM_SLOTS>>,
+) -> Chunk {
     let point = ray_at(ray, t);
     var depth = vec3f(0.0);
     var scatter: array<vec3f, MEDIUM_SLOTS>;
@@ -3018,7 +3046,7 @@ fn node_chunk(ray: Ray, t: f32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>
             source[medium] = interior.emission * mass;
         }
     }
-    light_place(ray, t, &scatter, &source);
+    light_place(ray, t, styled, &scatter, &source);
     // Add up what they send.
     var sent = vec3f(0.0);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
@@ -3040,6 +3068,24 @@ fn gather(before: Glow, node: i32, chunk: Chunk) -> Glow {
         glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
     }
     return glow;
+}
+
+// A scene without styles; see styled.wgsl.
+
+struct StyledRays {
+    none: f32,
+}
+
+fn style_rays(ray: Ray, end: f32) -> StyledRays {
+    return StyledRays(0.0);
+}
+
+fn styled_share(lamp: Arriving, light: u32, rays: ptr<function, StyledRays>, ray: Ray, t: f32) -> f32 {
+    return 1.0;
+}
+
+fn styled_tint(lamp: Arriving, light: u32, rays: ptr<function, StyledRays>, point: vec3f) -> vec3f {
+    return vec3f(1.0);
 }
 
 const GROUP_WIDTH: u32 = 8u;

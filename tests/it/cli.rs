@@ -111,8 +111,6 @@ impl Sandbox {
     fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_vol"));
         command.current_dir(self.folder.path()).args(arguments).stdin(Stdio::null());
-        // What is kept from run to run is kept here.
-        command.env("XDG_CACHE_HOME", self.path("cache"));
         command
     }
 

@@ -30,7 +30,7 @@
 //! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell in `vol_input`, number of its cells |
 //! | after them | `AT_LIGHTS` | 12 words per light of the program, those of the frame first: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none), word of its style's record (0: none) |
 //! | after them | `AT_GRIDS` | 27 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth in `vol_input` |
-//! | after them | | 47 words per style of the program, those of the frame's lights first, see [`StyledLight`]: occluders (0 none, 1 slices, 2 marched), lo xyz, hi xyz, toward the light xyz, axes of the slices u, v, w, first angle, slices per radian, slices, first distance, texels per unit, texels of a slice, word of the first slope; transfer function (0 none), near, per unit, word of its first texel; size of the light map (0 none), origin, u, v, word of its first texel; steps of the heterogeneity (0 none), index of its field, pixels between known means (0 none), means across and down, word of the first |
+//! | after them | | records of the program's styles, those of the frame's lights first, see [`styles`] |
 //!
 //! `vol_input`, binding 4, holds what may be long, [`input_words`]: the cells, 6 words each, lo xyz, hi xyz (a medium without cells may
 //! be anywhere in its box), then the depths of the grids, then for each styled light slopes, transfer
@@ -39,13 +39,15 @@
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
+mod styles;
+
 use super::layout::{self, Row, SceneRows};
 use super::{Notes, Shader, Space, WgslError, names};
-use crate::frame::styled::{Occluders, StyledLight, TRANSFER_SIZE};
+use crate::frame::styled::TRANSFER_SIZE;
 use crate::frame::{Aabb, Counts, Frame, Image, Job, LightGrid, MediumFrame, Pixel, Quadrature, Stride};
 use crate::ir::FunctionId;
-use crate::program::style::{Shafts, Style};
-use crate::program::{Lighting, Program, Slot};
+use crate::program::style::Shafts;
+use crate::program::{Lighting, Program};
 use std::fmt::Write;
 
 /// The integrator.
@@ -71,10 +73,6 @@ const INTEGRATOR: [&str; 16] = [
 /// Invocations of a workgroup along x and y, where none is asked for.
 pub const WORKGROUP: [u32; 2] = [8, 8];
 
-/// What the integrator adds for scenes with styles, and for those without.
-const STYLED: [&str; 2] = [include_str!("render/styled.wgsl"), include_str!("render/marched.wgsl")];
-const UNSTYLED: &str = include_str!("render/unstyled.wgsl");
-
 /// Entry point of a compute shader.
 const PIXEL: &str = include_str!("render/pixel.wgsl");
 
@@ -98,9 +96,6 @@ const CELL_WORDS: usize = 6;
 
 /// Words of a grid, without its depths.
 const GRID_WORDS: usize = 27;
-
-/// Words of a style.
-const STYLE_WORDS: usize = 47;
 
 /// Depths begin at multiples of this many words: so their places are exact in f32 up to 2^30.
 const GRID_ALIGNMENT: usize = 64;
@@ -193,8 +188,7 @@ fn pixel([width, height]: [u32; 2]) -> String {
 
 /// The integrator, with styles or without.
 fn integrator(program: &Program) -> String {
-    let styles = if program.styles.is_empty() { UNSTYLED.to_owned() } else { STYLED.join("\n") };
-    format!("{}\n{styles}", INTEGRATOR.join("\n"))
+    format!("{}\n{}", INTEGRATOR.join("\n"), styles::text(program))
 }
 
 fn module_text(
@@ -266,7 +260,7 @@ impl Places {
         let lights = media + MEDIUM_WORDS * program.media.len();
         let grids = lights + LIGHT_WORDS * program.lights.len();
         let styles = grids + GRID_WORDS * program.lights.len();
-        Self { media, lights, grids, styles, end: styles + STYLE_WORDS * program.styles.len() }
+        Self { media, lights, grids, styles, end: styles + styles::WORDS * program.styles.len() }
     }
 }
 
@@ -338,22 +332,9 @@ fn glue(program: &Program, quadrature: Quadrature) -> String {
         text += &pick.wgsl(program);
     }
     if !program.styles.is_empty() {
-        text += &style_fields(program).wgsl(program);
+        text += &styles::fields(program).wgsl(program);
     }
     text
-}
-
-/// Picks the heterogeneity of a style.
-fn style_fields(program: &Program) -> Pick<'static> {
-    let fields = program.styles.iter().map(|style| Some(style.heterogeneity?.field));
-    Pick {
-        signature: "style_field(index: u32, p: vec3f) -> f32",
-        otherwise: "1.0",
-        arguments: "p.x, p.y, p.z",
-        functions: fields.collect(),
-        result: "v",
-        counters: &[],
-    }
 }
 
 /// A function that picks the function of one object or medium by index.
@@ -548,9 +529,9 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         let grid = grid_of(frame, index).map_or(0, |_| grids_at);
         words.push(grid as f32);
         grids_at += if grid > 0 { GRID_WORDS } else { 0 };
-        let style = styled_light(frame, index).map_or(0, |_| styles_at);
+        let style = styles::of_light(frame, index).map_or(0, |_| styles_at);
         words.push(style as f32);
-        styles_at += if style > 0 { STYLE_WORDS } else { 0 };
+        styles_at += if style > 0 { styles::WORDS } else { 0 };
     }
     words.resize(places.grids, 0.0);
     let mut depths_at = cells_at.next_multiple_of(GRID_ALIGNMENT);
@@ -559,8 +540,8 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         depths_at += grid.depths.len().next_multiple_of(GRID_ALIGNMENT);
     }
     words.resize(places.styles, 0.0);
-    for light in styled_lights(frame) {
-        words.extend(style_record(program, light, &mut depths_at));
+    for light in styles::all(frame) {
+        words.extend(styles::record(program, light, &mut depths_at));
     }
     frame_row(program).filled(words.into_iter().map(f32::to_bits).collect())
 }
@@ -574,72 +555,9 @@ pub fn input_words(frame: &Frame) -> Vec<u32> {
         words.resize(words.len().next_multiple_of(GRID_ALIGNMENT), 0);
         words.extend(grid.depths.iter().map(|depth| depth.to_bits()));
     }
-    for table in styled_lights(frame).flat_map(tables) {
+    for table in styles::all(frame).flat_map(styles::tables) {
         words.resize(words.len().next_multiple_of(GRID_ALIGNMENT), 0);
         words.extend(table.iter().map(|number| number.to_bits()));
-    }
-    words
-}
-
-/// The light with a style at an index.
-fn styled_light(frame: &Frame, light: usize) -> Option<&StyledLight> {
-    frame.styled_lights.get(light)?.as_deref()
-}
-
-/// All lights that have a style.
-fn styled_lights(frame: &Frame) -> impl Iterator<Item = &StyledLight> {
-    (0..frame.lights.len()).filter_map(|light| styled_light(frame, light))
-}
-
-/// The tables of a styled light: slopes, transfer function, light map, means; empty where there is none.
-fn tables(light: &StyledLight) -> [&[f32]; 4] {
-    let slopes: &[f32] = match &light.occluders {
-        Occluders::Slices(slices) => &slices.slopes,
-        Occluders::None | Occluders::Marched => &[],
-    };
-    let transfer = light.transfer.as_ref().map_or(&[][..], |table| table.texels.as_flattened());
-    let map = light.light_map.as_ref().map_or(&[][..], |table| table.texels.as_flattened());
-    let means = light.heterogeneity.as_ref().and_then(|table| table.means.as_ref());
-    [slopes, transfer, map, means.map_or(&[][..], |means| means.texels.as_flattened())]
-}
-
-/// A styled light without its tables, which follow one another in `vol_input` from a word on.
-fn style_record(program: &Program, light: &StyledLight, at: &mut usize) -> [f32; STYLE_WORDS] {
-    let mut words = [0.0; STYLE_WORDS];
-    let places = tables(light).map(|table| {
-        let place = *at;
-        *at += table.len().next_multiple_of(GRID_ALIGNMENT);
-        place as f32
-    });
-    let mut put = |first: usize, numbers: &[f32]| words[first..][..numbers.len()].copy_from_slice(numbers);
-    let StyledLight { toward, bounds, occluders, transfer, light_map, heterogeneity } = light;
-    put(1, &[bounds.lo, bounds.hi, *toward].concat());
-    match occluders {
-        Occluders::None => {}
-        Occluders::Marched => put(0, &[2.0]),
-        Occluders::Slices(slices) => {
-            put(0, &[1.0]);
-            put(10, slices.axes.as_flattened());
-            let [rows, columns] = [slices.rows, slices.columns].map(|count| count as f32);
-            put(19, &[slices.first_angle, slices.per_radian, rows]);
-            put(22, &[slices.first_distance, slices.per_unit, columns, places[0]]);
-        }
-    }
-    if let Some(table) = transfer {
-        put(26, &[1.0, table.near, table.per_unit, places[1]]);
-    }
-    if let Some(map) = light_map {
-        put(30, &[map.size as f32]);
-        put(31, &[map.origin, map.axes[0], map.axes[1]].concat());
-        put(40, &[places[2]]);
-    }
-    if let Some(table) = heterogeneity {
-        let own = |style: &Style<Slot>| style.heterogeneity.is_some_and(|own| own.field == table.field);
-        let index = program.styles.iter().position(own).unwrap_or(program.styles.len());
-        put(41, &[table.steps as f32, index as f32]);
-        if let Some(means) = &table.means {
-            put(43, &[means.spacing as f32, means.counts[0] as f32, means.counts[1] as f32, places[3]]);
-        }
     }
     words
 }

@@ -10,8 +10,8 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use vol_compiler::frame::styled::Slices;
 
-/// Most words of all slices, 24 MiB: with the grids of lights they fit a buffer that any device can bind.
-const MAX_WORDS: usize = 6 << 20;
+/// Most words of all slices, 16 MiB: with the grids of lights and a light map they fit a buffer that any device can bind.
+const MAX_WORDS: usize = 4 << 20;
 
 /// How slices lie on a map.
 #[derive(Clone, Copy, Debug)]

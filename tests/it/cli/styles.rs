@@ -1,6 +1,6 @@
 //! Styles from the command line: their maps as files, what is kept of them, and what refuses them.
 
-use super::{Sandbox, equal, trial};
+use super::{Outcome, Sandbox, equal, trial};
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 
@@ -13,6 +13,12 @@ pub(super) fn trials() -> Vec<Trial> {
         trial("styles::exports_say_what_they_lack", exports_say),
         trial("styles::looks_are_imported", looks_are_imported),
     ]
+}
+
+/// Runs `vol` with what it keeps from run to run in the sandbox.
+fn vol(sandbox: &Sandbox, arguments: &str) -> Result<Outcome, Failed> {
+    let mut command = sandbox.command(arguments.split_whitespace());
+    Ok(command.env("XDG_CACHE_HOME", sandbox.path("cache")).output()?.into())
 }
 
 /// A roof with a hole in haze, with a style.
@@ -33,7 +39,7 @@ fn maps_are_written(sandbox: &Sandbox) -> Result<(), Failed> {
     sandbox.write("s.vol", scene(&format!("shadow_map: 64, {PAINTED}")))?;
     let run =
         "render s.vol -o a.exr --backend cpu --shadow-map shadow.png --light-map light.exr --stats s.json";
-    sandbox.vol(run)?.expect(0, &["a.exr"])?;
+    vol(sandbox, run)?.expect(0, &["a.exr"])?;
     let sizes = [image::open(sandbox.path("shadow.png"))?.width(), 64];
     equal(sizes[0], sizes[1])?;
     equal(vol::output::exr::read(&sandbox.path("light.exr")).map_err(|e| format!("{e:?}"))?.size, [32, 32])?;
@@ -50,7 +56,7 @@ fn maps_are_written(sandbox: &Sandbox) -> Result<(), Failed> {
 fn light_maps_are_kept(sandbox: &Sandbox) -> Result<(), Failed> {
     let run = |text: &str, picture: &str| -> Result<bool, Failed> {
         sandbox.write("s.vol", text)?;
-        sandbox.vol(&format!("render s.vol -o {picture} --backend cpu --stats s.json"))?.expect(0, &[])?;
+        vol(sandbox, &format!("render s.vol -o {picture} --backend cpu --stats s.json"))?.expect(0, &[])?;
         let stats: Value = serde_json::from_slice(&sandbox.read("s.json")?)?;
         Ok(stats["light_maps"][0]["iterations"].is_u64())
     };

@@ -253,7 +253,7 @@ fn depth_without_a_surface_is_infinite() {
 
 #[test]
 fn loops_have_the_bounds_that_are_told() {
-    let text = INTEGRATOR.iter().chain(&STYLED).copied().collect::<Vec<_>>().join("\n");
+    let text = INTEGRATOR.iter().chain(&styles::STYLED).copied().collect::<Vec<_>>().join("\n");
     for (name, most, _) in LOOP_BOUNDS {
         let spelled = [format!("const {name}: u32 = {most}u;"), format!("const {name}: i32 = {most};")];
         assert!(spelled.iter().any(|line| text.contains(line)), "{name}");

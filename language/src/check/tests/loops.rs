@@ -103,7 +103,12 @@ fn styles_name_blocks_words_and_settings() {
     let paint =
         "light_map: paint(strokes: [stroke(view: camera, from: (1, 2), to: (3, 4), width: 2, color: #fff)])";
     assert_eq!(style(paint), [""; 0]);
-    assert_eq!(style(&paint.replace("camera", "sun")), ["E0316 `sun`: another kind"]);
+    assert_eq!(style(&paint.replace("camera", "sun")), ["E0310 `sun`: no such view"]);
+    assert_eq!(style(&paint.replace("view: camera", "view: view(from: (1, 2, 3), at: (0, 0, 0))")), [""; 0]);
+    assert_eq!(style("enhance_silhouettes: 20 + time"), [""; 0]);
+    assert_eq!(style("enhance_silhouettes: extrude(20, only: [tree])"), [""; 0]);
+    assert_eq!(style("enhance_silhouettes: extrude(20, only: [sun])"), ["E0316 `sun`: another kind"]);
+    assert_eq!(style("enhance_silhouettes: #fff"), ["E0205 `#fff`: this is a color"]);
     assert_eq!(style("heterogeneity: { noise: perlin, brushes: [eraser((0, 1, 0), (1, 1, 1))] }"), [""; 0]);
 }
 

@@ -86,7 +86,7 @@ impl<F: Fields> Integrator<'_, F> {
         let mut styled: Vec<_> =
             rays.iter().zip(ends).map(|(ray, &end)| styled_ray(light, ray, end)).collect();
         if let Some(transfer) = &light.transfer {
-            let visible = self.average_visibility(light, rays, ends);
+            let visible = self.mean_visibility(light, rays, &styled, ends);
             for (index, styled) in styled.iter_mut().enumerate() {
                 let depth = self.first_depth(&rays[index], ends[index]);
                 styled.tint = transfer_color(transfer, visible[index], depth);
@@ -119,11 +119,21 @@ impl<F: Fields> Integrator<'_, F> {
         ends: &[F::Real],
     ) -> Vec<F::Real> {
         let styled: Vec<_> = rays.iter().zip(ends).map(|(ray, &end)| styled_ray(light, ray, end)).collect();
+        self.mean_visibility(light, rays, &styled, ends)
+    }
+
+    fn mean_visibility(
+        &mut self,
+        light: &StyledLight,
+        rays: &[Ray<F::Real>],
+        styled: &[StyledRay<F::Real>],
+        ends: &[F::Real],
+    ) -> Vec<F::Real> {
         let mut visible = vec![F::Real::ONE; rays.len()];
         let spans = rays.iter().zip(ends).map(|(ray, &end)| stretch(&light.bounds, ray, end));
         let cells = spans.enumerate().filter(|(_, [from, to])| from < to);
         let cells: Vec<_> = cells.map(|(ray, [from, to])| Cell { ray, from, to }).collect();
-        for (cell, share) in cells.iter().zip(self.lit_shares(light, rays, &styled, &cells)) {
+        for (cell, share) in cells.iter().zip(self.lit_shares(light, rays, styled, &cells)) {
             visible[cell.ray] = share;
         }
         visible

@@ -81,17 +81,9 @@ fn entry(
     plan: &mut Plan,
 ) -> Lowered<()> {
     let span = lowerer.hir.expr(id).span;
-    match key {
-        "shadow_map"
-        | "shafts"
-        | "fill_holes"
-        | "enhance_silhouettes"
-        | "make_holes"
-        | "transfer"
-        | "depth_range"
-        | "light_map"
-        | "heterogeneity" => {}
-        _ => return Ok(()),
+    // These two are known by now.
+    if matches!(key, "light" | "when") {
+        return Ok(());
     }
     let value = lowerer.expr(id)?;
     match (key, &value) {

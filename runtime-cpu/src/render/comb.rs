@@ -16,6 +16,7 @@
 
 use super::camera::{Ray, Span, slab};
 use super::fields::{Fields, Points};
+use super::scatter::Place;
 use super::scene::{Integrator, Medium};
 use crate::real::{Real, add, splat, sub};
 use vol_compiler::frame::Quadrature;
@@ -141,12 +142,11 @@ impl<R: Real> Combs<'_, R> {
     }
 }
 
-/// Nodes inside a medium. The slot of node `j` after the cursor of active ray `a` is
-/// `a * batches.nodes + j`.
+/// Nodes inside a medium.
 pub(crate) struct Inside<R> {
-    /// Slot of each.
-    pub(crate) slots: Vec<usize>,
-    /// Length of ray that it stands for.
+    /// Which they are.
+    pub(crate) places: Vec<Place<R>>,
+    /// Length of ray that each stands for.
     pub(crate) weights: Vec<R>,
     /// Where it is.
     pub(crate) points: Points<R>,
@@ -238,37 +238,35 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Inside<F::Real> {
         // Take the nodes in the medium's range and one more at either side.
         let mut runs = Vec::with_capacity(active.len());
-        let mut points = Points::new();
+        let (mut distances, mut points) = (Vec::new(), Points::new());
         for (which, cursor) in active.iter().enumerate() {
             for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
-                runs.push((which, first, last, points.len()));
-                let nodes = first - 1..=last + 1;
-                nodes.for_each(|node| points.push(rays[cursor.ray].at(combs.distance(cursor.ray, node))));
+                let start = distances.len();
+                distances.extend((first - 1..last + 2).map(|node| combs.distance(cursor.ray, node)));
+                points.extend_along(&rays[cursor.ray], &distances[start..]);
+                runs.push((which, first, start..distances.len()));
             }
         }
         let region = self.region(medium, &points);
         // Keep those inside, with the length that each stands for.
-        let mut inside = Inside { slots: Vec::new(), weights: Vec::new(), points: Points::new() };
-        for (which, first, last, offset) in runs {
-            let cursor = active[which];
-            let wall = |node: i32| {
-                let t = combs.distance(cursor.ray, node);
-                let index = offset + (node - (first - 1)) as usize;
-                region[index].max((t - combs.ends[cursor.ray]).max(-t))
-            };
-            let mut before = wall(first - 1);
-            let mut own = wall(first);
-            for node in first..=last {
-                let after = wall(node + 1);
-                if own < F::Real::ZERO {
-                    let weight = share(own, before, combs.step) + share(own, after, combs.step);
-                    let slot = which * self.batches.nodes as usize + (node - cursor.node) as usize;
-                    inside.slots.push(slot);
-                    inside.weights.push(weight);
-                    inside.points.push(points.get(offset + (node - (first - 1)) as usize));
+        let mut inside =
+            Inside { places: Vec::new(), weights: Vec::new(), points: Points::with_room(points.len()) };
+        let mut walls = Vec::new();
+        for (which, first, run) in runs {
+            let Cursor { ray, node } = active[which];
+            let (before, end) = ((first - node) as usize, combs.ends[ray]);
+            let own = &distances[run.clone()];
+            walls.clear();
+            walls.extend(
+                region[run.clone()].iter().zip(own).map(|(region, &t)| region.max((t - end).max(-t))),
+            );
+            for (index, walls) in walls.array_windows::<3>().enumerate() {
+                let &[left, wall, right] = walls;
+                if wall < F::Real::ZERO {
+                    inside.places.push(Place { which, node: Some(before + index), t: own[index + 1] });
+                    inside.weights.push(share(wall, left, combs.step) + share(wall, right, combs.step));
+                    inside.points.push(points.get(run.start + index + 1));
                 }
-                before = own;
-                own = after;
             }
         }
         inside

@@ -12,8 +12,8 @@
 
 use super::camera::Ray;
 use super::comb::{Combs, Cursor};
-use super::fields::Fields;
-use super::medium::{Chunk, Glow};
+use super::fields::{Fields, colors};
+use super::medium::{Chunk, EMISSION, EXTINCTION, Glow, SCATTERING};
 use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
@@ -26,11 +26,6 @@ const THIN: f32 = 0.125;
 
 /// From this optical depth a panel is thick.
 const THICK: f32 = 0.5;
-
-/// Places of the colours among the outputs of [`vol_compiler::program::Medium::interior`].
-const SCATTERING: usize = 1;
-const EXTINCTION: usize = 4;
-const EMISSION: usize = 7;
 
 impl<F: Fields> Integrator<'_, F> {
     /// Light and optical depth of the next panels.
@@ -88,8 +83,8 @@ fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>, decay
 /// A medium at the ends of its panels, and those of them whose light arrives. Ends of others stay dark.
 fn filling<R: Real>(medium: usize, panels: Panels<R, 10>, chunk: &Chunk<R>) -> (Filling<R>, Vec<Panel<R>>) {
     let count = panels.places.len();
-    let colors = |first: usize| (0..count).map(|place| panels.color(first, place)).collect::<Vec<_>>();
-    let (scatter, source) = (colors(SCATTERING), colors(EMISSION));
+    let [scatter, source] =
+        [SCATTERING, EMISSION].map(|first| colors(&panels.values, first).collect::<Vec<_>>());
     let mut list = panels.list;
     list.retain(|panel| chunk.arriving[panel.slot].is_some());
     let mut lit = vec![false; count];

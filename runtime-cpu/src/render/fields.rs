@@ -1,5 +1,6 @@
 //! Where the integrator gets the values of a program's functions from.
 
+use super::camera::Ray;
 use crate::interp::{Evaluator, Tapes};
 use crate::real::{Real, Vec3};
 use vol_compiler::frame::Frame;
@@ -53,11 +54,25 @@ impl<R: Real> Points<R> {
         Self { x: Vec::new(), y: Vec::new(), z: Vec::new() }
     }
 
+    /// None yet, and room for so many.
+    pub(crate) fn with_room(count: usize) -> Self {
+        let [x, y, z] = std::array::from_fn(|_| Vec::with_capacity(count));
+        Self { x, y, z }
+    }
+
     /// Adds one.
     pub(crate) fn push(&mut self, point: Vec3<R>) {
         self.x.push(point[0]);
         self.y.push(point[1]);
         self.z.push(point[2]);
+    }
+
+    /// Adds those at distances along a ray.
+    pub(crate) fn extend_along(&mut self, ray: &Ray<R>, distances: &[R]) {
+        for (axis, values) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
+            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+            values.extend(distances.iter().map(|&t| origin + direction * t));
+        }
     }
 
     /// How many there are.
@@ -73,10 +88,17 @@ impl<R: Real> Points<R> {
 
 impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
     fn from_iter<I: IntoIterator<Item = Vec3<R>>>(points: I) -> Self {
-        let mut all = Self::new();
-        points.into_iter().for_each(|point| all.push(point));
+        let points = points.into_iter();
+        let mut all = Self::with_room(points.size_hint().0);
+        points.for_each(|point| all.push(point));
         all
     }
+}
+
+/// The colours in three outputs of a function, the first of them named.
+pub(crate) fn colors<R: Real>(outputs: &[Vec<R>], first: usize) -> impl Iterator<Item = Vec3<R>> {
+    let [r, g, b] = [0, 1, 2].map(|channel| &outputs[first + channel]);
+    r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b])
 }
 
 /// The batch evaluator, f32.

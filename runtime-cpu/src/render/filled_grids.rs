@@ -7,7 +7,7 @@
 use super::fields::Fields;
 use super::grid_choice::MAX_WORDS;
 use super::light_grid;
-use super::scene::Scene;
+use super::scene::{Batches, Scene};
 use std::sync::Arc;
 use vol_compiler::frame::{Frame, Inputs, LightGrid};
 use vol_compiler::program::Program;
@@ -24,8 +24,8 @@ pub struct FilledGrids {
     most_bytes: usize,
 }
 
-/// Bytes of a point while its grid is filled: three depths of a column, of all columns, and of the grid.
-const PER_POINT: usize = 3 * 3 * size_of::<f32>();
+/// Bytes of a point of a grid, in as many channels as it may have; each thread has those of a batch of columns beside.
+const PER_POINT: usize = 3 * size_of::<f32>();
 
 /// Bytes of a column meanwhile: its ray.
 const PER_COLUMN: usize = 32;
@@ -98,9 +98,10 @@ impl FilledGrids {
 
     /// Counts what is there while one more grid is filled. Those of the frame may be gone from here.
     fn count_bytes(&mut self, layout: &LightGrid) {
-        let columns = layout.counts[0] as usize * layout.counts[1] as usize;
+        let [rows, more, points] = layout.counts.map(|count| count as usize);
         let kept = 2 * size_of::<f32>() * self.words();
-        let bytes = kept + PER_POINT * layout.points() + PER_COLUMN * columns;
+        let at_work = rayon::current_num_threads() * Batches::DEFAULT.rays * points * PER_POINT;
+        let bytes = kept + PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work;
         self.most_bytes = self.most_bytes.max(bytes);
     }
 }

@@ -81,15 +81,19 @@ impl<R: Real> Grid<R> {
 
     /// One channel between the points around; what the cubic overshoots below 0 is cut off.
     fn channel(&self, first: usize, [x, y, z]: &[Stencil<R>; 3]) -> R {
-        let mut sum = R::ZERO;
+        // Four sums side by side, which are one vector.
+        let mut sums = [R::ZERO; 4];
         for i in 0..4 {
             for j in 0..4 {
-                let [a, b, c, d] = self.row(first + x.at[i] + y.at[j], z.at).map(R::from_f32);
-                let [wa, wb, wc, wd] = z.weights;
-                let column = ((wa * a + wb * b) + wc * c) + wd * d;
-                sum = sum + (x.weights[i] * y.weights[j]) * column;
+                let weight = x.weights[i] * y.weights[j];
+                let row = self.row(first + x.at[i] + y.at[j], z.at);
+                for (sum, depth) in sums.iter_mut().zip(row) {
+                    *sum = *sum + weight * R::from_f32(depth);
+                }
             }
         }
+        let [a, b, c, d] = z.weights;
+        let sum = ((a * sums[0] + b * sums[1]) + c * sums[2]) + d * sums[3];
         sum.max(R::ZERO)
     }
 
@@ -181,24 +185,38 @@ pub(super) fn nodes(table: &LightGrid, step: f32) -> Option<u64> {
 /// Computes the depths of a grid, and how many functions were evaluated for it. Nothing if a column has too
 /// many nodes.
 pub(super) fn fill<F: Fields<Real = f32>>(
-    mut table: LightGrid,
+    table: LightGrid,
     scene: &Scene<f32>,
     fields: impl Fn() -> F + Sync,
 ) -> Option<(LightGrid, u64)> {
     let column = Column::new(&table, scene.shadow_step)?;
-    let rays: Vec<_> = (0..table.counts[0] * table.counts[1]).map(|index| ray(&table, index)).collect();
     let batches = Batches::for_media(scene.media.len());
-    let columns = |rays: &[Ray<f32>]| {
-        let mut integrator = Integrator::new(scene, fields(), batches);
-        let depths = integrator.columns(rays, column);
-        (depths, integrator.stats.shadow_samples + integrator.stats.region_evaluations)
+    let rays: Vec<_> = (0..table.counts[0] * table.counts[1]).map(|index| ray(&table, index)).collect();
+    let points = table.points();
+    // What `keep` makes of each depth, their tone, and what was spent.
+    let store = |channels: usize, keep: fn(&Vec3<f32>, &mut [f32])| {
+        let mut all = vec![0.0; channels * points];
+        let words = batches.rays * (column.intervals + 1) * channels;
+        let parts = all.par_chunks_mut(words).zip(rays.par_chunks(batches.rays));
+        let parts = parts.map(|(words, rays)| {
+            let mut integrator = Integrator::new(scene, fields(), batches);
+            let depths = integrator.columns(rays, column);
+            words.chunks_mut(channels).zip(&depths).for_each(|(words, depth)| keep(depth, words));
+            let stats = &integrator.stats;
+            (Tone::new(&depths), stats.shadow_samples + stats.region_evaluations)
+        });
+        let parts: Vec<_> = parts.collect();
+        let tone = parts.iter().fold(Tone::NONE, |tone, part| tone.with(part.0));
+        (all, tone, parts.iter().map(|part| part.1).sum())
     };
-    let parts: Vec<_> = rays.par_chunks(batches.rays).map(columns).collect();
-    let spent = parts.iter().map(|part| part.1).sum();
-    // Where they are: all of them in one piece would be as much memory again.
-    let depths: Vec<_> = parts.into_iter().map(|part| part.0).collect();
-    store(&mut table, &depths);
-    Some((table, spent))
+    // Nearly all media have extinction of one colour.
+    let (depths, tone, spent) = store(1, |depth, words| words[0] = total(depth));
+    if tone.is_one {
+        return Some((LightGrid { tint: tone.tint(), colored: false, depths, ..table }, spent));
+    }
+    drop(depths);
+    let (depths, _, spent) = store(3, |depth, words| words.copy_from_slice(depth));
+    Some((LightGrid { tint: [1.0; 3], colored: true, depths, ..table }, spent))
 }
 
 /// The ray of a column.
@@ -219,22 +237,50 @@ fn ray(table: &LightGrid, index: u32) -> Ray<f32> {
 /// Largest difference of two channels, relative to their sum, that rounding of the sums may make.
 const SAME: f32 = 1e-5;
 
-/// Puts depths into a grid: one per point where the channels are in proportion, as in all media whose
-/// extinction has one colour.
-fn store(table: &mut LightGrid, depths: &[Vec<Vec3<f32>>]) {
-    let all = || depths.iter().flatten();
-    let total = |depth: &Vec3<f32>| (depth[0] + depth[1]) + depth[2];
-    let deepest = all().fold([0.0; 3], |a, b| if total(b) > total(&a) { *b } else { a });
-    let whole = total(&deepest);
-    let tint = if whole > 0.0 { deepest.map(|depth| depth / whole) } else { [1.0; 3] };
-    let alike = |depth: &Vec3<f32>| {
-        let amount = total(depth);
-        (0..3).all(|channel| (depth[channel] - tint[channel] * amount).abs() <= SAME * amount)
-    };
-    table.colored = !all().all(alike);
-    table.tint = if table.colored { [1.0; 3] } else { tint };
-    table.depths =
-        if table.colored { all().flatten().copied().collect() } else { all().map(total).collect() };
+/// Sum of the channels.
+fn total(depth: &Vec3<f32>) -> f32 {
+    (depth[0] + depth[1]) + depth[2]
+}
+
+/// Whether depths are of one colour, in proportion but for rounding, and of which.
+#[derive(Clone, Copy)]
+struct Tone {
+    /// The largest of them.
+    deepest: Vec3<f32>,
+    is_one: bool,
+}
+
+impl Tone {
+    /// Of no depths.
+    const NONE: Self = Self { deepest: [0.0; 3], is_one: true };
+
+    fn new(depths: &[Vec3<f32>]) -> Self {
+        let deepest = depths.iter().fold([0.0; 3], |a, b| if total(b) > total(&a) { *b } else { a });
+        let own = Self { deepest, is_one: true };
+        Self { is_one: own.holds(depths), ..own }
+    }
+
+    /// What a depth is to be multiplied by per channel.
+    fn tint(&self) -> Vec3<f32> {
+        let whole = total(&self.deepest);
+        if whole > 0.0 { self.deepest.map(|depth| depth / whole) } else { [1.0; 3] }
+    }
+
+    /// Whether depths are of its colour.
+    fn holds(&self, depths: &[Vec3<f32>]) -> bool {
+        let tint = self.tint();
+        depths.iter().all(|depth| {
+            let amount = total(depth);
+            (0..3).all(|channel| (depth[channel] - tint[channel] * amount).abs() <= SAME * amount)
+        })
+    }
+
+    /// Of both.
+    fn with(self, other: Self) -> Self {
+        let deeper = if total(&other.deepest) > total(&self.deepest) { other } else { self };
+        let is_one = self.is_one && other.is_one && deeper.holds(&[self.deepest, other.deepest]);
+        Self { is_one, ..deeper }
+    }
 }
 
 impl<F: Fields> Integrator<'_, F> {
@@ -252,12 +298,13 @@ impl<F: Fields> Integrator<'_, F> {
             // Give each node's or panel's depth to the point behind it.
             let found = self.step_depths(rays, &combs, &active);
             for (cursor, found) in active.iter().zip(found.chunks(nodes as usize)) {
-                for (node, &depth) in (cursor.node..).zip(found) {
-                    let point = (node / column.nodes) as usize + 1;
-                    if point < points {
-                        let place = &mut depths[cursor.ray * points + point];
-                        *place = add(*place, depth);
-                    }
+                let depths = &mut depths[cursor.ray * points..][1..points];
+                let before = (column.nodes - cursor.node % column.nodes) as usize;
+                let (first, rest) = found.split_at(before.min(found.len()));
+                let intervals = std::iter::once(first).chain(rest.chunks(column.nodes as usize));
+                let first = (cursor.node / column.nodes) as usize;
+                for (place, found) in depths.iter_mut().skip(first).zip(intervals) {
+                    *place = found.iter().fold(*place, |sum, &depth| add(sum, depth));
                 }
             }
             active.retain_mut(|cursor| combs.advance(cursor, nodes));

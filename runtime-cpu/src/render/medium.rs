@@ -13,13 +13,18 @@
 
 use super::camera::Ray;
 use super::comb::{Combs, Cursor, Inside};
-use super::fields::Fields;
-use super::scatter::{Filling, Place, scatters};
+use super::fields::{Fields, colors};
+use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
 use super::styled::StyledRays;
 use crate::real::{Real, Vec3, add, largest, mul, scale, splat};
 use std::array;
 use vol_compiler::frame::Quadrature;
+
+/// Places of the colours among the outputs of [`vol_compiler::program::Medium::interior`].
+pub(super) const SCATTERING: usize = 1;
+pub(super) const EXTINCTION: usize = 4;
+pub(super) const EMISSION: usize = 7;
 
 /// Where less than this of the light arrives, the ray ends: what lies behind is lost, at most this
 /// much of its radiance.
@@ -119,7 +124,7 @@ impl<F: Fields> Integrator<'_, F> {
         let nodes = self.batches.nodes as usize;
         for filling in &fillings {
             for (place, &source) in filling.places.iter().zip(&filling.source) {
-                let slot = place.which * nodes + place.node.unwrap_or(0);
+                let slot = place.slot(nodes);
                 chunk.sent[slot] = add(chunk.sent[slot], chunk.mean(slot, source));
             }
         }
@@ -143,10 +148,9 @@ impl<F: Fields> Integrator<'_, F> {
         let fillings = fillings.map(|medium| self.fill(medium, rays, combs, active, &mut chunk));
         let mut fillings: Vec<_> = fillings.collect();
         self.transmit(active, glows, &mut chunk);
-        let slot = |place: &Place<F::Real>| place.which * nodes + place.node.unwrap_or(0);
         for filling in &mut fillings {
             let places = filling.places.iter().zip(&filling.scatter);
-            let lit = places.map(|(place, &k)| chunk.arriving[slot(place)].is_some() && scatters(k));
+            let lit = places.map(|(place, &k)| chunk.arriving[place.slot(nodes)].is_some() && scatters(k));
             filling.lit = lit.collect();
             if only.is_some() {
                 filling.source.fill(splat(F::Real::ZERO));
@@ -165,23 +169,21 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
         chunk: &mut Chunk<F::Real>,
     ) -> Filling<F::Real> {
-        let Inside { slots, weights, points } = self.inside(medium, rays, combs, active);
+        let Inside { places, weights, points } = self.inside(medium, rays, combs, active);
         let interior = self.scene.media[medium].interior;
         let values: [Vec<F::Real>; 10] = self.fields.sample(interior, &points);
-        self.stats.medium_samples += slots.len() as u64;
-        let color = |first: usize, i: usize| [values[first][i], values[first + 1][i], values[first + 2][i]];
-        let nodes = self.batches.nodes as usize;
-        let (mut places, mut scatter, mut source) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, (slot, weight)) in slots.into_iter().zip(weights).enumerate() {
-            let mass = values[0][i].max(F::Real::ZERO) * weight;
-            chunk.depth[slot] = add(chunk.depth[slot], scale(color(4, i), mass));
-            let (which, node) = (slot / nodes, slot % nodes);
-            let cursor = active[which];
-            let t = combs.distance(cursor.ray, cursor.node + node as i32);
-            places.push(Place { which, node: Some(node), t });
-            scatter.push(scale(color(1, i), mass));
-            source.push(scale(color(7, i), mass));
+        self.stats.medium_samples += places.len() as u64;
+        let mut masses = weights;
+        for (mass, density) in masses.iter_mut().zip(&values[0]) {
+            *mass = density.max(F::Real::ZERO) * *mass;
         }
+        let nodes = self.batches.nodes as usize;
+        let per_mass = |first| colors(&values, first).zip(&masses).map(|(color, &mass)| scale(color, mass));
+        for (place, depth) in places.iter().zip(per_mass(EXTINCTION)) {
+            let slot = place.slot(nodes);
+            chunk.depth[slot] = add(chunk.depth[slot], depth);
+        }
+        let [scatter, source] = [SCATTERING, EMISSION].map(|first| per_mass(first).collect());
         Filling { medium, places, points, scatter, lit: Vec::new(), source }
     }
 

@@ -57,13 +57,13 @@ pub(crate) struct Panels<R, const N: usize> {
 impl<R: Real, const N: usize> Panels<R, N> {
     /// Three outputs of the function at a place.
     pub(crate) fn color(&self, first: usize, place: usize) -> Vec3<R> {
-        [0, 1, 2].map(|channel| self.values[first + channel][place])
+        [self.values[first][place], self.values[first + 1][place], self.values[first + 2][place]]
     }
 
     /// Optical depth of a panel; the extinction per unit of density is in three outputs.
     pub(crate) fn depth(&self, panel: &Panel<R>, first: usize) -> Vec3<R> {
-        let [from, to] = [0, 1].map(|end| scale(self.color(first, panel.ends[end]), panel.masses[end]));
-        add(from, to)
+        let [from, to] = panel.ends;
+        add(scale(self.color(first, from), panel.masses[0]), scale(self.color(first, to), panel.masses[1]))
     }
 }
 
@@ -155,8 +155,7 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Panels<F::Real, N> {
         let (mut places, stretches, crossings) = self.stretches(medium, rays, combs, active);
         places.extend(self.walls(medium, rays, active, crossings));
-        let point = |place: &Place<F::Real>| rays[active[place.which].ray].at(place.t);
-        let points: Points<F::Real> = places.iter().map(point).collect();
+        let points = places.iter().map(|place| rays[active[place.which].ray].at(place.t)).collect();
         let values: [Vec<F::Real>; N] = self.fields.sample(function, &points);
         let panel = |Stretch { slot, ends, open }: Stretch| {
             let length = places[ends[1]].t - places[ends[0]].t;
@@ -179,51 +178,55 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Found<F::Real> {
         // Take the nodes of the panels in the medium's range.
         let mut runs = Vec::with_capacity(active.len());
-        let (mut nodes, mut points) = (Vec::new(), Points::new());
+        let (mut distances, mut points) = (Vec::new(), Points::new());
         for (which, cursor) in active.iter().enumerate() {
+            let end = combs.ends[cursor.ray];
             for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
-                runs.push((which, first, last, nodes.len()));
-                for node in first..=last + 1 {
-                    let t = combs.distance(cursor.ray, node);
-                    let t = t.max(F::Real::ZERO).min(combs.ends[cursor.ray]);
-                    let place = Place { which, node: Some((node - cursor.node) as usize), t };
-                    nodes.push(place);
-                    points.push(rays[cursor.ray].at(t));
-                }
+                let start = distances.len();
+                runs.push((which, first, start..start + (last - first) as usize + 2));
+                let nodes = (first..last + 2).map(|node| combs.distance(cursor.ray, node));
+                distances.extend(nodes.map(|t| t.max(F::Real::ZERO).min(end)));
+                points.extend_along(&rays[cursor.ray], &distances[start..]);
             }
         }
         let region = self.region(medium, &points);
-        // Keep those inside.
-        let mut places = Vec::new();
-        let mut place_of = vec![0; nodes.len()];
-        for (index, node) in nodes.iter().enumerate().filter(|&(index, _)| region[index] < F::Real::ZERO) {
-            place_of[index] = places.len();
-            places.push(*node);
-        }
-        // Between two of them is a stretch; a wall ends it where one is outside.
-        let (mut stretches, mut crossings) = (Vec::new(), Vec::new());
-        let mut gaps = Vec::new();
-        for (which, first, last, offset) in runs {
-            for node in first..=last {
-                let index = offset + (node - first) as usize;
-                let ends = [index, index + 1];
-                let inside = ends.map(|end| region[end] < F::Real::ZERO);
-                if nodes[ends[0]].t >= nodes[ends[1]].t {
+        let is_inside = |index: usize| region[index] < F::Real::ZERO;
+        let nodes = (0..region.len()).filter(|&index| is_inside(index)).count();
+        let (mut places, mut stretches) = (Vec::with_capacity(nodes), Vec::with_capacity(region.len()));
+        let (mut crossings, mut gaps) = (Vec::new(), Vec::new());
+        for (which, first, run) in runs {
+            let Cursor { ray, node } = active[which];
+            let slot = which * self.batches.nodes as usize;
+            let place = |index: usize| {
+                let node = first - node + (index - run.start) as i32;
+                Place { which, node: Some(node as usize), t: distances[index] }
+            };
+            let mut before = is_inside(run.start);
+            if before {
+                places.push(place(run.start));
+            }
+            // Between two of those inside is a stretch; a wall ends it where one is outside.
+            for (to, number) in (run.start + 1..run.end).zip(first..) {
+                let inside = [before, is_inside(to)];
+                before = inside[1];
+                let known = places.len();
+                if inside[1] {
+                    places.push(place(to));
+                }
+                let [from, to] = [to - 1, to].map(|index| [distances[index], region[index]]);
+                if from[0] >= to[0] {
                     continue;
                 }
-                let slot = which * self.batches.nodes as usize + (node - active[which].node) as usize;
-                let [from, to] = ends.map(|end| [nodes[end].t, region[end]]);
+                let slot = slot + (number - node) as usize;
                 if inside == [false, false] {
                     gaps.extend(Gap::new(which, slot, from, to));
                     continue;
                 }
-                let wall = places.len() + crossings.len();
-                let is_last = nodes[ends[1]].t < combs.distance(active[which].ray, node + 1);
-                stretches.push(Stretch {
-                    slot,
-                    ends: [0, 1].map(|i| if inside[i] { place_of[ends[i]] } else { wall }),
-                    open: [!inside[0] || node == 0, !inside[1] || is_last],
-                });
+                let wall = nodes + crossings.len();
+                let ends = [if inside[0] { known - 1 } else { wall }, if inside[1] { known } else { wall }];
+                let is_last = to[0] < combs.distance(ray, number + 1);
+                let open = [!inside[0] || number == 0, !inside[1] || is_last];
+                stretches.push(Stretch { slot, ends, open });
                 match inside {
                     [true, false] => crossings.push(Crossing::new(which, from, to)),
                     [false, true] => crossings.push(Crossing::new(which, to, from)),
@@ -232,7 +235,7 @@ impl<F: Fields> Integrator<'_, F> {
             }
         }
         for chord in self.chords(medium, rays, active, gaps) {
-            let wall = places.len() + crossings.len();
+            let wall = nodes + crossings.len();
             stretches.push(Stretch { slot: chord.slot, ends: [wall, wall + 1], open: [true, true] });
             crossings.extend(chord.walls);
         }

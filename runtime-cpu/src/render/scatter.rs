@@ -25,6 +25,13 @@ pub(crate) struct Place<R> {
     pub(crate) t: R,
 }
 
+impl<R> Place<R> {
+    /// The slot of its node, with so many to an active ray.
+    pub(crate) fn slot(&self, nodes: usize) -> usize {
+        self.which * nodes + self.node.unwrap_or(0)
+    }
+}
+
 /// One medium at its places.
 pub(crate) struct Filling<R> {
     pub(crate) medium: usize,
@@ -120,27 +127,27 @@ impl<F: Fields> Integrator<'_, F> {
         if !light.shadows {
             return seen;
         }
-        // One node more than panels.
+        let scene = self.scene;
+        let shadowed =
+            |filling: &Filling<F::Real>| scene.media[filling.medium].lighting == Lighting::Shadowed;
+        // One node more than panels; of one medium each asks for itself.
         let nodes = self.batches.nodes as usize + 1;
-        let mut known = vec![None; active.len() * nodes];
+        let shared = fillings.iter().filter(|filling| shadowed(filling)).count() > 1;
+        let mut known = vec![None; if shared { active.len() * nodes } else { 0 }];
         let (mut asking, mut places, mut shadow_rays) = (Vec::new(), Vec::new(), Vec::new());
-        for (which, filling) in fillings.iter().enumerate() {
-            if self.scene.media[filling.medium].lighting != Lighting::Shadowed {
-                continue;
-            }
+        for (which, filling) in fillings.iter().enumerate().filter(|(_, filling)| shadowed(filling)) {
             for (index, place) in filling.places.iter().enumerate().filter(|&(index, _)| filling.lit[index]) {
-                let node = place.node.map(|node| place.which * nodes + node);
-                let earlier = node.and_then(|node| known[node]);
-                let number = earlier.unwrap_or(shadow_rays.len());
-                if earlier.is_none() {
+                let mut node = place.node.and_then(|_| known.get_mut(place.slot(nodes)));
+                let number = node.as_ref().and_then(|node| **node).unwrap_or(shadow_rays.len());
+                if number == shadow_rays.len() {
                     let origin = filling.points.get(index);
                     let lamp = arriving(light, origin);
                     let ray = Ray::new(origin, lamp.direction);
                     places.push(asked(active, place));
-                    shadow_rays.push(ShadowRay::new(ray, lamp.distance, shadow_bias(self.scene, place.t)));
+                    shadow_rays.push(ShadowRay::new(ray, lamp.distance, shadow_bias(scene, place.t)));
                 }
-                if let Some(node) = node {
-                    known[node] = Some(number);
+                if let Some(node) = &mut node {
+                    **node = Some(number);
                 }
                 asking.push((which, index, number));
             }

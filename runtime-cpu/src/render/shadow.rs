@@ -6,7 +6,7 @@
 
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};
-use super::fields::Fields;
+use super::fields::{Fields, colors};
 use super::panel::Panels;
 use super::penumbra::Cone;
 use super::scene::{Integrator, Light};
@@ -84,30 +84,32 @@ impl<F: Fields> Integrator<'_, F> {
             let mut seen = vec![splat(F::Real::ZERO); batch.len()];
             // Only what solids do not hide goes through the media.
             let free: Vec<usize> = (0..batch.len()).filter(|&ray| parts[ray] > F::Real::ZERO).collect();
-            let paths: Vec<_> = free.iter().map(|&ray| batch[ray].ray).collect();
-            let ends: Vec<_> = free.iter().map(|&ray| batch[ray].length).collect();
-            for (ray, depth) in free.into_iter().zip(self.depth_towards(light, &paths, &ends)) {
+            let depths = self.depth_towards(light, batch, &free);
+            let mut decays = vec![splat(F::Real::ZERO); depths.len()];
+            F::Real::decays(depths.as_flattened(), decays.as_flattened_mut());
+            for ((ray, depth), decay) in free.into_iter().zip(depths).zip(decays) {
                 let dark = smallest(depth) > self.scene.opaque;
-                let weakened = scale(depth.map(Real::decay), parts[ray]);
-                seen[ray] = if dark { splat(F::Real::ZERO) } else { weakened };
+                seen[ray] = if dark { splat(F::Real::ZERO) } else { scale(decay, parts[ray]) };
             }
             all.extend(seen);
         }
         all
     }
 
-    /// Optical depth between the start of each ray and the light at its end: of the light's grid where it has
-    /// one.
+    /// Optical depth between the start of some rays and the light at their end: of the light's grid where it
+    /// has one.
     fn depth_towards(
         &mut self,
         light: &Light<F::Real>,
-        rays: &[Ray<F::Real>],
-        ends: &[F::Real],
+        rays: &[ShadowRay<F::Real>],
+        some: &[usize],
     ) -> Vec<Vec3<F::Real>> {
         if let Some(grid) = self.scene.grid(light) {
-            return rays.iter().map(|ray| grid.depth(ray.origin)).collect();
+            return some.iter().map(|&ray| grid.depth(rays[ray].ray.origin)).collect();
         }
-        self.optical_depth(rays, ends)
+        let paths: Vec<_> = some.iter().map(|&ray| rays[ray].ray).collect();
+        let ends: Vec<_> = some.iter().map(|&ray| rays[ray].length).collect();
+        self.optical_depth(&paths, &ends)
     }
 
     /// Whether the ray enters a solid before it reaches the light.
@@ -230,11 +232,16 @@ impl<F: Fields> Integrator<'_, F> {
     ) {
         let inside = self.inside(medium, rays, combs, active);
         let extinction = self.scene.media[medium].extinction;
-        let [density, r, g, b] = self.fields.sample(extinction, &inside.points);
-        self.stats.shadow_samples += density.len() as u64;
-        for (i, (&slot, &weight)) in inside.slots.iter().zip(&inside.weights).enumerate() {
-            let mass = density[i].max(F::Real::ZERO) * weight;
-            steps[slot] = add(steps[slot], scale([r[i], g[i], b[i]], mass));
+        let values: [Vec<F::Real>; 4] = self.fields.sample(extinction, &inside.points);
+        self.stats.shadow_samples += inside.places.len() as u64;
+        let nodes = self.batches.nodes as usize;
+        let masses = values[0]
+            .iter()
+            .zip(&inside.weights)
+            .map(|(density, &weight)| density.max(F::Real::ZERO) * weight);
+        for ((place, color), mass) in inside.places.iter().zip(colors(&values, 1)).zip(masses) {
+            let slot = place.slot(nodes);
+            steps[slot] = add(steps[slot], scale(color, mass));
         }
     }
 

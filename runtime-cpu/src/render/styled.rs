@@ -192,7 +192,7 @@ impl<F: Fields> Integrator<'_, F> {
             let (chunk, fillings) = self.lit_nodes(rays, &styled, &combs, &active, &glows, Some(light));
             for filling in &fillings {
                 for (index, place) in filling.places.iter().enumerate() {
-                    let slot = place.which * self.batches.nodes as usize + place.node.unwrap_or(0);
+                    let slot = place.slot(self.batches.nodes as usize);
                     let Some(arriving) = chunk.arriving[slot].filter(|_| filling.lit[index]) else {
                         continue;
                     };

@@ -42,17 +42,17 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
 fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil, channels: u32) -> f32 {
     // Always 4, which no driver knows: unrolled wherever it is asked for, this compiles for minutes.
     let four = min(channels + 3u, 4u);
-    var sum = 0.0;
+    // Four sums side by side, which are one vector.
+    var sums = vec4f(0.0);
     for (var i = 0u; i < four; i++) {
         for (var j = 0u; j < four; j++) {
-            let row = (first + x.at[i]) + y.at[j];
-            let ab = (z.weights.x * vol_input_word(row + z.at.x)) + (z.weights.y * vol_input_word(row + z.at.y));
-            let abc = ab + (z.weights.z * vol_input_word(row + z.at.z));
-            let column = abc + (z.weights.w * vol_input_word(row + z.at.w));
-            sum += (x.weights[i] * y.weights[j]) * column;
+            let row = vec4u((first + x.at[i]) + y.at[j]) + z.at;
+            let depths = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
+            sums += (x.weights[i] * y.weights[j]) * depths;
         }
     }
-    return max(sum, 0.0);
+    let weighted = z.weights * sums;
+    return max(((weighted.x + weighted.y) + weighted.z) + weighted.w, 0.0);
 }
 
 // The four points around a place along one axis.

@@ -25,6 +25,7 @@ use bank::{Bank, Chunk, Rows};
 use batch::{Context, Lanes};
 use local::LocalTapes;
 use pulp::Simd;
+use rayon::prelude::*;
 use std::array;
 use std::ops::Range;
 use vol_compiler::curve::CurveTable;
@@ -66,7 +67,7 @@ impl Tapes {
     /// Prepares a verified module.
     #[must_use]
     pub fn of_module(module: &Module) -> Self {
-        Self { tapes: module.functions.iter().map(Tape::new).collect(), isa: Isa::best(), local: None }
+        Self { tapes: module.functions.par_iter().map(Tape::new).collect(), isa: Isa::best(), local: None }
     }
 
     /// The same for other vector instructions; results are the same bits.

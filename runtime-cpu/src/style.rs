@@ -27,10 +27,11 @@ pub use transfer::Picture;
 
 use crate::interp::Tapes;
 use crate::render::{Batch, Batches, Integrator, NO_DEPTH, Ray, Scene};
+use occluders::Traced;
 use shadow_map::{Layout, bounded};
 use std::sync::Arc;
 use vol_compiler::frame::styled::{HeterogeneityTable, Occluders, StyledLight, TransferTable};
-use vol_compiler::frame::{Aabb, Diagnostic, Frame, Image, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Aabb, CameraFrame, Diagnostic, Frame, Image, Job, Quadrature, Sampling};
 use vol_compiler::program::style::{OperatorKind, Shafts, Style};
 use vol_compiler::program::{Lighting, Program};
 use vol_compiler::wgsl::render::padded;
@@ -75,9 +76,10 @@ pub fn prepare(
     let job = Job { size, step, shadow_step: SHADOW_STEP * step, quadrature, sampling };
     let stage = Stage { program, frame, job: &job, tapes: &tapes, bounds };
     for style in &frame.styles {
-        let mut styled = stage.lit_by(style);
+        let hiders = stage.hiders(style);
+        let mut styled = stage.lit_by(style, &hiders, &frame.camera);
         if let Some(settings) = &style.light_map {
-            let fitted = light_map::fit(&stage, style, settings, known(style))?;
+            let fitted = light_map::fit(&stage, style, settings, &hiders, known(style))?;
             styled.light_map = Some(fitted.table.clone());
             prepared.light_maps.push(fitted);
         }
@@ -110,9 +112,19 @@ pub fn shadow_maps(program: &Program, frame: &Frame, size: [u32; 2]) -> Vec<(Str
     let mapped = frame.styles.iter().filter(|style| style.shafts == Shafts::Mapped);
     let image = |style: &Style<f64>| {
         let layout = stage.layout(style)?;
-        Some((style.name.clone(), layout.image(&occluders::heights(&stage, style, layout))))
+        let heights = Traced::new(&stage, style, layout).heights(style, frame.camera.origin);
+        Some((style.name.clone(), layout.image(&heights)))
     };
     mapped.filter_map(image).collect()
+}
+
+/// What hides the light of a style, whoever looks.
+enum Hiders {
+    None,
+    /// Solids that are marched to.
+    Marched,
+    /// A shadow map of them.
+    Mapped(Traced),
 }
 
 /// What all parts of a style are prepared from.
@@ -126,21 +138,28 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// The light of a style with what hides it, and nothing else yet.
-    fn lit_by(&self, style: &Style<f64>) -> StyledLight {
-        let light = &self.frame.lights[style.light];
-        let occluders = if !light.shadows || self.frame.objects.is_empty() {
-            Occluders::None
+    /// What hides the light of a style.
+    fn hiders(&self, style: &Style<f64>) -> Hiders {
+        if !self.frame.lights[style.light].shadows || self.frame.objects.is_empty() {
+            Hiders::None
         } else if style.shafts == Shafts::Exact {
-            Occluders::Marched
+            Hiders::Marched
         } else {
             let layout = self.layout(style);
-            layout.map_or(Occluders::None, |layout| Occluders::Slices(occluders::slices(self, style, layout)))
-        };
+            layout.map_or(Hiders::None, |layout| Hiders::Mapped(Traced::new(self, style, layout)))
+        }
+    }
+
+    /// The light of a style before its colours, for a camera.
+    fn lit_by(&self, style: &Style<f64>, hiders: &Hiders, camera: &CameraFrame) -> StyledLight {
         StyledLight {
-            toward: light.position,
+            toward: self.frame.lights[style.light].position,
             bounds: self.bounds,
-            occluders,
+            occluders: match hiders {
+                Hiders::None => Occluders::None,
+                Hiders::Marched => Occluders::Marched,
+                Hiders::Mapped(traced) => Occluders::Slices(traced.slices(style, camera.origin)),
+            },
             transfer: None,
             light_map: None,
             heterogeneity: None,
@@ -151,11 +170,6 @@ impl Stage<'_> {
     fn layout(&self, style: &Style<f64>) -> Option<Layout> {
         let grow = style.operators.iter().any(|operator| matches!(operator.kind, OperatorKind::Extrude(_)));
         Layout::new(&self.frame.lights[style.light], self.frame, &self.bounds, style.shadow_map, grow)
-    }
-
-    /// The same with another camera.
-    fn seen_by<'a>(&'a self, frame: &'a Frame) -> Stage<'a> {
-        Stage { program: self.program, frame, job: self.job, tapes: self.tapes, bounds: self.bounds }
     }
 
     /// Average visibility and depth, 0 to 1, of the ray through a point of the world; none if it is not in the picture.

@@ -5,14 +5,26 @@
 //!
 //! Example: of the 400 boxes of a tube of 100 segments a ray across it looks at about 30.
 
-use super::camera::{Ray, Span, contains, slab};
+use super::camera::{FAR, PARALLEL, Ray, Span, contains, slab};
+use crate::isa::{Isa, Kernel};
 use crate::real::{Real, Vec3, add, splat, sub};
+use std::marker::PhantomData;
 
 /// A tree of boxes.
 #[derive(Debug)]
 pub(crate) struct BoxTree<R> {
     /// Each before those below it.
     nodes: Vec<Node<R>>,
+}
+
+/// What was found of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Answer<T> {
+    /// Index of the box.
+    pub(crate) index: usize,
+    /// Number of the question.
+    pub(crate) question: usize,
+    pub(crate) found: T,
 }
 
 /// A box around others, or one of them.
@@ -82,20 +94,54 @@ impl<R: Real> BoxTree<R> {
         }
     }
 
-    /// Indices of the boxes of which `holds` is true for at least one of `count` questions, in order. What is true
-    /// of a box must be true of every box around it.
-    pub(crate) fn any(&self, count: usize, holds: impl Fn(usize, Vec3<R>, Vec3<R>) -> bool) -> Vec<usize> {
-        let mut found = Vec::new();
+    /// What `ask` finds of each box for each of `count` questions, by the index of the box, then by the question. Of a
+    /// box around others it must find something where it does of one of those.
+    pub(crate) fn answers<T>(
+        &self,
+        count: usize,
+        ask: impl Fn(usize, Vec3<R>, Vec3<R>) -> Option<T>,
+    ) -> Vec<Answer<T>> {
+        let mut answers = Vec::new();
         for question in 0..count {
-            let ask = |lo, hi| holds(question, lo, hi).then_some(());
-            self.visit(ask, |index, ()| {
-                found.push(index);
-                true
-            });
+            self.visit(
+                |lo, hi| ask(question, lo, hi),
+                |index, found| {
+                    answers.push(Answer { index, question, found });
+                    true
+                },
+            );
         }
-        found.sort_unstable();
-        found.dedup();
-        found
+        answers.sort_by_key(|answer| answer.index);
+        answers
+    }
+
+    /// What `ask` finds of the boxes that rays meet, by the index of the box, then by the ray. It is asked of a few
+    /// more, but of all that [`slab`] finds something of.
+    pub(crate) fn met<T>(
+        &self,
+        rays: &[Ray<R>],
+        ask: impl Fn(usize, Vec3<R>, Vec3<R>) -> Option<T>,
+    ) -> Vec<Answer<T>> {
+        let isa = Isa::best();
+        let bundle = Bundle::new(rays);
+        let mut near = vec![0; rays.len()];
+        let (mut answers, mut at) = (Vec::new(), 0);
+        while let Some(node) = self.nodes.get(at) {
+            let count = isa.run::<Near<R>>((&bundle, node, &mut near));
+            if count == 0 {
+                at = node.skip;
+                continue;
+            }
+            if node.skip == at + 1 {
+                for question in (0..rays.len()).filter(|&ray| near[ray] != 0) {
+                    let found = ask(question, node.lo, node.hi);
+                    answers.extend(found.map(|found| Answer { index: node.index, question, found }));
+                }
+            }
+            at += 1;
+        }
+        answers.sort_by_key(|answer| answer.index);
+        answers
     }
 
     /// The parts of a ray up to `end` that are within `reach` of boxes, one for each of them.
@@ -134,6 +180,61 @@ impl<R: Real> BoxTree<R> {
             false
         });
         near
+    }
+}
+
+/// Rays side by side, for loops that vectorise.
+struct Bundle<R> {
+    origin: [Vec<R>; 3],
+    /// One over the direction.
+    inverse: [Vec<R>; 3],
+}
+
+/// One over a component that counts as 0: times any coordinate it is finite.
+const STEEP: f32 = 1e30;
+
+/// Part by which a ray may miss a box and still be near it: more than division and multiplication differ.
+const SLACK: f32 = 1e-6;
+
+impl<R: Real> Bundle<R> {
+    fn new(rays: &[Ray<R>]) -> Self {
+        let inverse = |d: R| if d.abs() < R::from_f32(PARALLEL) { R::from_f32(STEEP) } else { R::ONE / d };
+        let row = |of: fn(&Ray<R>) -> Vec3<R>, axis: usize| rays.iter().map(move |ray| of(ray)[axis]);
+        Self {
+            origin: [0, 1, 2].map(|axis| row(|ray| ray.origin, axis).collect()),
+            inverse: [0, 1, 2].map(|axis| row(|ray| ray.direction, axis).map(inverse).collect()),
+        }
+    }
+}
+
+/// Which rays of a bundle [`slab`] may find a part of in a node's box, 1 or 0 each, and how many.
+struct Near<R>(PhantomData<R>);
+
+impl<R: Real> Kernel for Near<R> {
+    type Args<'a> = (&'a Bundle<R>, &'a Node<R>, &'a mut [u32]);
+    type Out = u32;
+
+    #[inline(always)]
+    fn run((bundle, node, near): Self::Args<'_>) -> u32 {
+        let [ox, oy, oz] = bundle.origin.each_ref().map(|row| &row[..near.len()]);
+        let [ix, iy, iz] = bundle.inverse.each_ref().map(|row| &row[..near.len()]);
+        let mut count = 0;
+        for (ray, near) in near.iter_mut().enumerate() {
+            let (mut entry, mut exit) = (R::ZERO, R::from_f32(FAR));
+            let axes = [(ox[ray], ix[ray]), (oy[ray], iy[ray]), (oz[ray], iz[ray])];
+            for (axis, (origin, inverse)) in axes.into_iter().enumerate() {
+                let (lo, hi) = (node.lo[axis], node.hi[axis]);
+                let (one, other) = ((lo - origin) * inverse, (hi - origin) * inverse);
+                // Along the planes a ray is between them always or never.
+                let always = (inverse == R::from_f32(STEEP)) & (lo <= origin) & (origin <= hi);
+                entry = if always { entry } else { entry.max(one.min(other)) };
+                exit = if always { exit } else { exit.min(one.max(other)) };
+            }
+            let slack = R::from_f32(SLACK);
+            *near = u32::from(entry - slack * entry <= exit + slack * exit.abs());
+            count += *near;
+        }
+        count
     }
 }
 
@@ -198,15 +299,43 @@ mod tests {
     }
 
     #[test]
-    fn any_finds_each_box_once_and_in_order() {
+    fn answers_are_those_of_all_boxes_in_order() {
         let all = boxes(250);
         let tree = BoxTree::new(all.clone());
         let rays: Vec<_> = rays().collect();
-        let meets = |ray: usize, lo, hi| slab(&rays[ray], lo, hi).is_some();
-        let met = |&box_: &usize| (0..rays.len()).any(|ray| meets(ray, all[box_][0], all[box_][1]));
-        let expected: Vec<usize> = (0..all.len()).filter(met).collect();
-        assert!(expected.len() > 7 && expected.len() < 250, "{}", expected.len());
-        assert_eq!(tree.any(rays.len(), meets), expected);
+        let meets = |ray: usize, lo, hi| {
+            let span = slab(&rays[ray], lo, hi);
+            span.is_some().then_some(span)
+        };
+        let expected = all.iter().enumerate().flat_map(|(index, &[lo, hi])| {
+            let found =
+                (0..rays.len()).filter_map(move |question| Some((question, meets(question, lo, hi)?)));
+            found.map(move |(question, found)| Answer { index, question, found })
+        });
+        let expected: Vec<_> = expected.collect();
+        assert!(expected.len() > 70, "{}", expected.len());
+        assert_eq!(tree.answers(rays.len(), meets), expected);
+        assert_eq!(tree.met(&rays, meets), expected);
+    }
+
+    #[test]
+    fn rays_along_axes_and_faces_meet_what_slab_says() {
+        let all: Vec<[Vec3<f32>; 2]> = (0..27)
+            .map(|i| [i / 9, i / 3 % 3, i % 3].map(|x| x as f32))
+            .map(|lo| [lo, add(lo, if lo[0] > 1.0 { [1.0, 0.0, 1.0] } else { splat(1.0) })])
+            .collect();
+        let tree = BoxTree::new(all.clone());
+        let directions =
+            [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1e-13, 0.6, -0.8], [-0.6, 0.8, -0.0], [0.8, 3e-12, 0.6]];
+        let origins = [[-1.0, 1.0, 1.0], [0.5, 4.0, 2.0], [3.0, 0.0, 3.0], [1.5, 1.5, 1.5], [-1e6, 1.0, 0.5]];
+        let rays: Vec<_> = directions.into_iter().flat_map(|d| origins.map(|o| Ray::new(o, d))).collect();
+        let meets = |ray: usize, lo, hi| {
+            let span = slab(&rays[ray], lo, hi).loosened();
+            span.is_some().then_some(span)
+        };
+        let expected = tree.answers(rays.len(), meets);
+        assert!(expected.len() > 40, "{}", expected.len());
+        assert_eq!(tree.met(&rays, meets), expected);
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //!
 //! Twin: `compiler/src/wgsl/render/marched.wgsl`.
 
-use super::camera::{FAR, Ray, slab};
+use super::camera::{FAR, Ray, Span, slab};
 use super::fields::Fields;
 use super::scene::{Integrator, Stride};
 use super::styled::Cell;
@@ -212,10 +212,11 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// The solids that rays meet or pass within a reach.
     fn met_nearby(&self, rays: &[Ray<F::Real>], reach: &[F::Real]) -> Vec<Met<F::Real>> {
-        self.met(rays.len(), |ray, lo, hi| {
+        let part = |ray: usize, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
             let lo = lo.map(|x| x - reach[ray]);
             let hi = hi.map(|x| x + reach[ray]);
-            slab(&rays[ray], lo, hi).loosened()
-        })
+            Some(slab(&rays[ray], lo, hi).loosened()).filter(Span::is_some)
+        };
+        Met::of(&self.scene.ask_boxes(rays.len(), part))
     }
 }

@@ -49,16 +49,16 @@ impl<F: Fields> Integrator<'_, F> {
             contacts.iter().map(|contact| add(contact.position, scale(contact.normal, height))).collect();
         // A solid whose box is farther than the height hides nothing.
         let is_near = |point: usize, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
-            contains(lo.map(|x| x - height), hi.map(|x| x + height), above[point])
+            contains(lo.map(|x| x - height), hi.map(|x| x + height), above[point]).then_some(())
         };
-        for index in scene.solids_where(above.len(), is_near) {
-            let solid = &scene.solids[index];
-            let here: Vec<usize> = (0..above.len()).filter(|&i| is_near(i, solid.lo, solid.hi)).collect();
-            let points: Points<_> = here.iter().map(|&i| above[i]).collect();
-            let [found] = self.fields.sample(solid.distance, &points);
-            self.stats.surface_evaluations += here.len() as u64;
-            for (which, distance) in here.into_iter().zip(found) {
-                distances[which] = distances[which].min(self.sides[index] * distance);
+        for near in scene.ask_boxes(above.len(), is_near).chunk_by(|a, b| a.index == b.index) {
+            let solid = near[0].index;
+            let points: Points<_> = near.iter().map(|answer| above[answer.question]).collect();
+            let [found] = self.fields.sample(scene.solids[solid].distance, &points);
+            self.stats.surface_evaluations += near.len() as u64;
+            for (answer, distance) in near.iter().zip(found) {
+                let nearest = &mut distances[answer.question];
+                *nearest = nearest.min(self.sides[solid] * distance);
             }
         }
         distances

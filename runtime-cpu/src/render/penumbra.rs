@@ -16,12 +16,12 @@
 //!
 //! Twin: `compiler/src/wgsl/render/penumbra.wgsl`.
 
-use super::camera::{FAR, Ray, slab};
+use super::camera::{FAR, Ray, Span, slab};
 use super::fields::{Fields, Points};
 use super::scene::{Integrator, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
-use super::surface::{EPSILON, MAX_STEPS, Met};
+use super::surface::{EPSILON, MAX_STEPS, Met, by_ray};
 use crate::real::{Real, Vec3, add, length, scale, sub};
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -168,14 +168,15 @@ impl<F: Fields> Integrator<'_, F> {
 
     /// The solids whose boxes are within cones, with the parts of the rays where they are.
     fn met_by_cones(&self, cones: &[Cone<F::Real>]) -> Vec<Met<F::Real>> {
-        self.met(cones.len(), |cone, lo, hi| {
+        let part = |cone: usize, lo, hi| {
             let Cone { shadow: ShadowRay { ray, length: end, .. }, slope } = &cones[cone];
             let below = sub(lo, ray.origin).map(Real::abs);
             let above = sub(hi, ray.origin).map(Real::abs);
             let farthest = length([0, 1, 2].map(|axis| below[axis].max(above[axis])));
             let width = wide(*slope) * farthest.min(*end);
-            slab(ray, lo.map(|x| x - width), hi.map(|x| x + width)).loosened()
-        })
+            Some(slab(ray, lo.map(|x| x - width), hi.map(|x| x + width)).loosened()).filter(Span::is_some)
+        };
+        Met::of(&self.scene.ask_boxes(cones.len(), part))
     }
 
     /// Looks around from every feeler.
@@ -188,28 +189,33 @@ impl<F: Fields> Integrator<'_, F> {
         let far = F::Real::from_f32(FAR);
         let mut all = vec![Around { distance: far, safe: far, gap: far }; feelers.len()];
         let scene = self.scene;
+        let feeler_in = by_ray(cones.len(), feelers.iter().map(|feeler| feeler.cone));
         for met in all_met {
             let solid = &scene.solids[met.solid];
             // Find the feelers near this solid's box, and how far the others are from it.
             let mut here = Vec::new();
             let mut points = Points::new();
-            for (which, feeler) in feelers.iter().enumerate() {
-                let span = met.spans[feeler.cone];
-                if span.is_some() && feeler.t < span.entry {
-                    all[which].gap = all[which].gap.min(span.entry - feeler.t);
-                } else if span.is_some() && feeler.t <= span.exit {
+            for &(cone, span) in &met.parts {
+                let Some(which) = feeler_in[cone] else { continue };
+                let t = feelers[which].t;
+                if t < span.entry {
+                    all[which].gap = all[which].gap.min(span.entry - t);
+                } else if t <= span.exit {
                     here.push(which);
-                    points.push(cones[feeler.cone].shadow.ray.at(feeler.t));
+                    points.push(cones[cone].shadow.ray.at(t));
                 }
+            }
+            if here.is_empty() {
+                continue;
             }
             let [mut distances] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
-            let ahead = |which: &usize| {
-                let feeler: &Feeler<F::Real> = &feelers[*which];
+            let ahead = |index: usize| {
+                let feeler: &Feeler<F::Real> = &feelers[here[index]];
                 Ahead { ray: cones[feeler.cone].shadow.ray, t: feeler.t, last: F::Real::ZERO }
             };
             let mut safe = distances.clone();
-            self.shorten(solid, &here.iter().map(ahead).collect::<Vec<_>>(), &mut safe);
+            self.shorten(solid, ahead, &mut safe);
             // A field in units of its own is as far from 0 as its slope there says.
             if matches!(solid.stride, Stride::Within(_)) {
                 distances.clone_from(&safe);

@@ -1,6 +1,7 @@
 //! A frame and a job as the integrator reads them: in its own precision, boxes made finite.
 
-use super::box_tree::BoxTree;
+use super::box_tree::{Answer, BoxTree};
+use super::camera::{Ray, Span, slab};
 use super::fields::Fields;
 use super::light_grid::Grid;
 use super::medium::STOP;
@@ -161,18 +162,43 @@ impl<R: Real> Scene<R> {
         }
     }
 
-    /// Indices, in order, of the solids of which `holds` may be true for at least one of `count` questions; it is told
-    /// the question and a box, and must be true of every box around one of which it is true.
-    pub(crate) fn solids_where(
+    /// The parts of rays in the boxes of solids, a little longer than rounding can make them, by solid, then by ray.
+    pub(crate) fn boxes_met(&self, rays: &[Ray<R>]) -> Vec<Answer<Span<R>>> {
+        let part = |ray: usize, lo, hi| Some(slab(&rays[ray], lo, hi).loosened()).filter(Span::is_some);
+        if self.solid_boxes.is_empty() {
+            self.ask_each(rays.len(), part)
+        } else {
+            self.solid_boxes.met(rays, part)
+        }
+    }
+
+    /// What `ask` finds of the boxes of solids for each of `count` questions, by solid, then by question; it is told
+    /// the question and a box, and must find something of a box around one of which it does.
+    pub(crate) fn ask_boxes<T>(
         &self,
         count: usize,
-        holds: impl Fn(usize, Vec3<R>, Vec3<R>) -> bool,
-    ) -> Vec<usize> {
+        ask: impl Fn(usize, Vec3<R>, Vec3<R>) -> Option<T>,
+    ) -> Vec<Answer<T>> {
         if self.solid_boxes.is_empty() {
-            (0..self.solids.len()).collect()
+            self.ask_each(count, ask)
         } else {
-            self.solid_boxes.any(count, holds)
+            self.solid_boxes.answers(count, ask)
         }
+    }
+
+    /// The same without a tree.
+    fn ask_each<T>(
+        &self,
+        count: usize,
+        ask: impl Fn(usize, Vec3<R>, Vec3<R>) -> Option<T>,
+    ) -> Vec<Answer<T>> {
+        let mut answers = Vec::new();
+        for (index, solid) in self.solids.iter().enumerate() {
+            let found =
+                (0..count).filter_map(|question| Some((question, ask(question, solid.lo, solid.hi)?)));
+            answers.extend(found.map(|(question, found)| Answer { index, question, found }));
+        }
+        answers
     }
 
     /// The grid of a light.

@@ -48,11 +48,11 @@ impl<R: Real> Ahead<R> {
 }
 
 impl<F: Fields> Integrator<'_, F> {
-    /// Makes values of a solid's field safe to walk; what is inside stays as it is.
+    /// Makes values of a solid's field safe to walk, which are those at places `ahead`; what is inside stays as it is.
     pub(super) fn shorten(
         &mut self,
         solid: &Solid<F::Real>,
-        there: &[Ahead<F::Real>],
+        ahead: impl Fn(usize) -> Ahead<F::Real>,
         values: &mut [F::Real],
     ) {
         let steepness = match solid.stride {
@@ -62,11 +62,12 @@ impl<F: Fields> Integrator<'_, F> {
                 return;
             }
         };
+        let there: Vec<_> = (0..values.len()).map(ahead).collect();
         let mut reaches: Vec<_> =
             there.iter().zip(&*values).map(|(ahead, &value)| ahead.reach(value)).collect();
         let mut pending: Vec<usize> = (0..there.len()).filter(|&i| values[i] > F::Real::ZERO).collect();
         for _ in 0..TRIES {
-            let steepest = self.steepest(steepness, there, &reaches, &pending);
+            let steepest = self.steepest(steepness, &there, &reaches, &pending);
             let is_known = |found: &(usize, F::Real)| found.1 < F::Real::from_f32(NO_BOUND);
             let (known, unknown): (Vec<_>, Vec<_>) = pending.into_iter().zip(steepest).partition(is_known);
             known.into_iter().for_each(|(i, steepest)| values[i] = (values[i] / steepest).min(reaches[i]));

@@ -10,9 +10,10 @@
 //!
 //! Twin: `compiler/src/wgsl/render/surface.wgsl`.
 
-use super::camera::{FAR, Ray, Span, contains, slab};
+use super::box_tree::Answer;
+use super::camera::{FAR, Ray, Span, contains};
 use super::fields::{Fields, Points};
-use super::scene::{Batches, Integrator, Scene, Solid};
+use super::scene::{Batches, Integrator, Scene};
 use super::stride::Ahead;
 use crate::real::{Real, Vec3, dot, length, scale};
 use std::collections::BTreeMap;
@@ -76,8 +77,20 @@ pub(crate) struct Met<R> {
     pub(crate) solid: usize,
     /// Sign of its distance for these rays.
     pub(crate) side: R,
-    /// The part of each ray in its box.
-    pub(crate) spans: Vec<Span<R>>,
+    /// The rays that meet its box, in order, each with its part in it.
+    pub(crate) parts: Vec<(usize, Span<R>)>,
+}
+
+impl<R: Real> Met<R> {
+    /// Those of which something was found, with the parts of the rays.
+    pub(super) fn of(answers: &[Answer<Span<R>>]) -> Vec<Self> {
+        let met = |own: &[Answer<Span<R>>]| Self {
+            solid: own[0].index,
+            side: R::ONE,
+            parts: own.iter().map(|answer| (answer.question, answer.found)).collect(),
+        };
+        answers.chunk_by(|a, b| a.index == b.index).map(met).collect()
+    }
 }
 
 /// Where a ray meets a solid.
@@ -133,14 +146,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
     fn find_sides(&mut self) {
         let scene = self.scene;
         let eye = Points::from_iter([scene.camera.origin]);
-        let holds = |lo, hi| contains(lo, hi, scene.camera.origin);
-        for index in scene.solids_where(1, |_, lo, hi| holds(lo, hi)) {
-            let solid = &scene.solids[index];
-            if holds(solid.lo, solid.hi) {
-                let [distance] = self.fields.sample(solid.distance, &eye);
-                let inside = distance[0] < F::Real::ZERO;
-                self.sides[index] = if inside { -F::Real::ONE } else { F::Real::ONE };
-            }
+        let holds = |_, lo, hi| contains(lo, hi, scene.camera.origin).then_some(());
+        for Answer { index, .. } in scene.ask_boxes(1, holds) {
+            let [distance] = self.fields.sample(scene.solids[index].distance, &eye);
+            let inside = distance[0] < F::Real::ZERO;
+            self.sides[index] = if inside { -F::Real::ONE } else { F::Real::ONE };
         }
     }
 
@@ -151,32 +161,15 @@ impl<'a, F: Fields> Integrator<'a, F> {
         for met in &mut all {
             met.side = self.sides[met.solid];
             if met.side < F::Real::ZERO {
-                met.spans.iter_mut().for_each(|span| span.exit = F::Real::from_f32(FAR));
+                met.parts.iter_mut().for_each(|(_, span)| span.exit = F::Real::from_f32(FAR));
             }
         }
         all
     }
 
-    /// The solids whose boxes rays meet, with the parts of the rays in them, a little longer than rounding can
-    /// make them.
+    /// The solids whose boxes rays meet.
     pub(crate) fn met_from_outside(&self, rays: &[Ray<F::Real>]) -> Vec<Met<F::Real>> {
-        self.met(rays.len(), |ray, lo, hi| slab(&rays[ray], lo, hi).loosened())
-    }
-
-    /// The solids that some of `count` rays meet, where `span` is the part of a ray that belongs to a box: of a larger
-    /// box at least as much.
-    pub(super) fn met(
-        &self,
-        count: usize,
-        span: impl Fn(usize, Vec3<F::Real>, Vec3<F::Real>) -> Span<F::Real>,
-    ) -> Vec<Met<F::Real>> {
-        let found = self.scene.solids_where(count, |ray, lo, hi| span(ray, lo, hi).is_some());
-        let met = |solid: usize| {
-            let Solid { lo, hi, .. } = self.scene.solids[solid];
-            let spans = (0..count).map(|ray| span(ray, lo, hi)).collect();
-            Met { solid, side: F::Real::ONE, spans }
-        };
-        found.into_iter().map(met).collect()
+        Met::of(&self.scene.boxes_met(rays))
     }
 
     /// Looks around from every walker.
@@ -190,20 +183,25 @@ impl<'a, F: Fields> Integrator<'a, F> {
         let mut all =
             vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
+        let walker_on = by_ray(rays.len(), walkers.iter().map(|walker| walker.ray));
         for met in all_met {
             let solid = &scene.solids[met.solid];
             // Find the walkers in this solid's box, and how far the others are from it.
             let mut here = Vec::new();
             let mut points = Points::new();
-            for (which, walker) in walkers.iter().enumerate() {
-                let span = met.spans[walker.ray];
-                if span.is_some() && walker.t < span.entry {
-                    all[which].gap = all[which].gap.min(span.entry - walker.t);
-                } else if span.is_some() && walker.t <= span.exit {
-                    all[which].rest = all[which].rest.max(span.exit - walker.t);
+            for &(ray, span) in &met.parts {
+                let Some(which) = walker_on[ray] else { continue };
+                let t = walkers[which].t;
+                if t < span.entry {
+                    all[which].gap = all[which].gap.min(span.entry - t);
+                } else if t <= span.exit {
+                    all[which].rest = all[which].rest.max(span.exit - t);
                     here.push(which);
-                    points.push(rays[walker.ray].at(walker.t));
+                    points.push(rays[ray].at(t));
                 }
+            }
+            if here.is_empty() {
+                continue;
             }
             // Keep the smallest distance; the earlier solid on a tie.
             let [mut safe] = self.fields.sample(solid.distance, &points);
@@ -212,11 +210,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
                 *value = met.side * *value;
                 all[which].value = all[which].value.min(*value);
             }
-            let ahead = |which: &usize| {
-                let walker: &Walker<F::Real> = &walkers[*which];
+            let ahead = |index: usize| {
+                let walker: &Walker<F::Real> = &walkers[here[index]];
                 Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
             };
-            self.shorten(solid, &here.iter().map(ahead).collect::<Vec<_>>(), &mut safe);
+            self.shorten(solid, ahead, &mut safe);
             for (which, safe) in here.into_iter().zip(safe) {
                 if safe < all[which].distance {
                     all[which].distance = safe;
@@ -388,6 +386,13 @@ impl<R: Real> Bracket<R> {
         let [t, value] = if outside { self.outside } else { self.inside };
         [t, value.abs()]
     }
+}
+
+/// Which of those that are still on their way is on each of `count` rays.
+pub(super) fn by_ray(count: usize, walking: impl Iterator<Item = usize>) -> Vec<Option<usize>> {
+    let mut which = vec![None; count];
+    walking.enumerate().for_each(|(index, ray)| which[ray] = Some(index));
+    which
 }
 
 /// All rays at their origins.

@@ -7,7 +7,7 @@
 //! last one counts.
 
 use super::least_squares::{Fit, Transport, fit as solve};
-use super::{Stage, shadow_map};
+use super::{Hiders, Stage, shadow_map};
 use crate::render::{Batch, Batches, Integrator, Scene, camera_ray};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -53,6 +53,7 @@ pub(super) fn fit(
     stage: &Stage<'_>,
     style: &Style<f64>,
     settings: &LightMap<f64>,
+    hiders: &Hiders,
     texels: Option<Vec<[f32; 3]>>,
 ) -> Result<FittedMap, Diagnostic> {
     let light = &stage.frame.lights[style.light];
@@ -71,7 +72,7 @@ pub(super) fn fit(
     let (mut rows, mut wanted) = (Vec::new(), Vec::new());
     for (camera, pixels) in views {
         let pixels: Vec<Painted> = pixels.into_iter().step_by(stride).collect();
-        let frame = seen_from(stage, style, camera);
+        let frame = seen_from(stage, style, hiders, camera);
         for (row, color) in weights(stage, &frame, style.light, &table, &pixels).into_iter().zip(&pixels) {
             let white = row.iter().fold([0.0; 3], |sum, (_, w)| [0, 1, 2].map(|i| sum[i] + f64::from(w[i])));
             wanted.push([0, 1, 2].map(|i| (white[i] * color.1[i]) as f32));
@@ -177,9 +178,9 @@ fn for_each_pixel(stroke: &Stroke<f64>, size: [u32; 2], mut call: impl FnMut([u3
 }
 
 /// The frame from a camera, its light with the style's occluders and nothing else of the style.
-fn seen_from(stage: &Stage<'_>, style: &Style<f64>, camera: CameraFrame) -> Frame {
+fn seen_from(stage: &Stage<'_>, style: &Style<f64>, hiders: &Hiders, camera: CameraFrame) -> Frame {
     let mut frame = Frame { camera, ..stage.frame.clone() };
-    let styled = stage.seen_by(&frame).lit_by(style);
+    let styled = stage.lit_by(style, hiders, &camera);
     frame.styled_lights = vec![None; frame.lights.len()];
     frame.styled_lights[style.light] = Some(Arc::new(styled));
     frame

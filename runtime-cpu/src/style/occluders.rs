@@ -18,34 +18,50 @@ use vol_compiler::program::style::{Operator, OperatorKind, Style};
 /// Largest kernel in texels.
 const MAX_KERNEL: f64 = 8192.0;
 
-/// The heights that a style makes of its light's shadow map, texel by texel, `u` fastest.
-pub(super) fn heights(stage: &Stage<'_>, style: &Style<f64>, layout: Layout) -> Vec<f32> {
-    let fan = Fan::new(layout, stage.frame.camera.origin.map(f64::from));
-    joined(changed(stage, style, &layout, &fan), |layer| layer.into_map(&fan))
+/// The shadow map of a style before any operator, whoever looks at it.
+pub(super) struct Traced {
+    layout: Layout,
+    layers: Vec<Layer>,
 }
 
-/// The slices of a style's light as the eye sees them.
-pub(super) fn slices(stage: &Stage<'_>, style: &Style<f64>, layout: Layout) -> Slices {
-    let fan = Fan::new(layout, stage.frame.camera.origin.map(f64::from));
-    fan.table(joined(changed(stage, style, &layout, &fan), |layer| layer.into_slopes(&fan)))
-}
-
-/// The layers of a shadow map after all operators.
-fn changed(stage: &Stage<'_>, style: &Style<f64>, layout: &Layout, fan: &Fan) -> Vec<Layer> {
-    let mut layers = layers(stage, style, layout);
-    for operator in &style.operators {
-        operate(operator, &mut layers, layout, fan);
+impl Traced {
+    /// Follows the rays of the light.
+    pub(super) fn new(stage: &Stage<'_>, style: &Style<f64>, layout: Layout) -> Self {
+        Self { layout, layers: layers(stage, style, &layout) }
     }
-    layers
+
+    /// The map after all operators, texel by texel, `u` fastest.
+    pub(super) fn heights(&self, style: &Style<f64>, eye: [f32; 3]) -> Vec<f32> {
+        let (fan, layers) = self.changed(style, eye);
+        joined(layers, |layer| layer.into_map(&fan))
+    }
+
+    /// The slices of the light as an eye sees them.
+    pub(super) fn slices(&self, style: &Style<f64>, eye: [f32; 3]) -> Slices {
+        let (fan, layers) = self.changed(style, eye);
+        fan.table(joined(layers, |layer| layer.into_slopes(&fan)))
+    }
+
+    /// The layers after all operators, and how the slices of an eye lie on them.
+    fn changed(&self, style: &Style<f64>, eye: [f32; 3]) -> (Fan, Vec<Layer>) {
+        let fan = Fan::new(self.layout, eye.map(f64::from));
+        let mut layers = self.layers.clone();
+        for operator in &style.operators {
+            operate(operator, &mut layers, &self.layout, &fan);
+        }
+        (fan, layers)
+    }
 }
 
 /// Some objects and how high they are.
+#[derive(Clone)]
 struct Layer {
     objects: Vec<String>,
     shape: Shape,
 }
 
 /// Heights on a map, or slopes in slices.
+#[derive(Clone)]
 enum Shape {
     Map(Vec<f32>),
     Slices(Vec<f32>),

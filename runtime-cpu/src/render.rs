@@ -74,6 +74,7 @@ pub use spread::spread_pixels;
 
 pub(crate) use camera::{Ray, camera_ray};
 pub(crate) use fields::Batch;
+pub(crate) use light_grid::fill as fill_light_grid;
 pub(crate) use scene::{Batches, Integrator, Scene};
 pub(crate) use shadow::ShadowRay;
 pub(crate) use styled::{NO_DEPTH, transfer_color};

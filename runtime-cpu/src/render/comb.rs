@@ -249,8 +249,7 @@ impl<F: Fields> Integrator<'_, F> {
         }
         let region = self.region(medium, &points);
         // Keep those inside, with the length that each stands for.
-        let mut inside =
-            Inside { places: Vec::new(), weights: Vec::new(), points: Points::with_room(points.len()) };
+        let mut kept = Vec::with_capacity(points.len());
         let mut walls = Vec::new();
         for (which, first, run) in runs {
             let Cursor { ray, node } = active[which];
@@ -260,16 +259,19 @@ impl<F: Fields> Integrator<'_, F> {
             walls.extend(
                 region[run.clone()].iter().zip(own).map(|(region, &t)| region.max((t - end).max(-t))),
             );
-            for (index, walls) in walls.array_windows::<3>().enumerate() {
-                let &[left, wall, right] = walls;
+            for (index, &[left, wall, right]) in walls.array_windows::<3>().enumerate() {
                 if wall < F::Real::ZERO {
-                    inside.places.push(Place { which, node: Some(before + index), t: own[index + 1] });
-                    inside.weights.push(share(wall, left, combs.step) + share(wall, right, combs.step));
-                    inside.points.push(points.get(run.start + index + 1));
+                    let place = Place { which, node: Some(before + index), t: own[index + 1] };
+                    let weight = share(wall, left, combs.step) + share(wall, right, combs.step);
+                    kept.push((place, weight, run.start + index + 1));
                 }
             }
         }
-        inside
+        Inside {
+            places: kept.iter().map(|&(place, ..)| place).collect(),
+            weights: kept.iter().map(|&(_, weight, _)| weight).collect(),
+            points: kept.iter().map(|&(.., index)| points.get(index)).collect(),
+        }
     }
 }
 

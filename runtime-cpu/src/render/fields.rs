@@ -54,12 +54,6 @@ impl<R: Real> Points<R> {
         Self { x: Vec::new(), y: Vec::new(), z: Vec::new() }
     }
 
-    /// None yet, and room for so many.
-    pub(crate) fn with_room(count: usize) -> Self {
-        let [x, y, z] = std::array::from_fn(|_| Vec::with_capacity(count));
-        Self { x, y, z }
-    }
-
     /// Adds one.
     pub(crate) fn push(&mut self, point: Vec3<R>) {
         self.x.push(point[0]);
@@ -88,8 +82,14 @@ impl<R: Real> Points<R> {
 
 impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
     fn from_iter<I: IntoIterator<Item = Vec3<R>>>(points: I) -> Self {
-        let points = points.into_iter();
-        let mut all = Self::with_room(points.size_hint().0);
+        let mut points = points.into_iter();
+        // Those that are sure to come need no room made one by one.
+        let [x, y, z] = std::array::from_fn(|_| vec![R::ZERO; points.size_hint().0]);
+        let mut all = Self { x, y, z };
+        let places = all.x.iter_mut().zip(&mut all.y).zip(&mut all.z);
+        for (((x, y), z), point) in places.zip(&mut points) {
+            [*x, *y, *z] = point;
+        }
         points.for_each(|point| all.push(point));
         all
     }

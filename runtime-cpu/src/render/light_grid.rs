@@ -184,7 +184,7 @@ pub(super) fn nodes(table: &LightGrid, step: f32) -> Option<u64> {
 
 /// Computes the depths of a grid, and how many functions were evaluated for it. Nothing if a column has too
 /// many nodes.
-pub(super) fn fill<F: Fields<Real = f32>>(
+pub(crate) fn fill<F: Fields<Real = f32>>(
     table: LightGrid,
     scene: &Scene<f32>,
     fields: impl Fn() -> F + Sync,

@@ -17,7 +17,7 @@
 //! Twin: `compiler/src/wgsl/render/penumbra.wgsl`.
 
 use super::camera::{FAR, Ray, Span, slab};
-use super::fields::{Fields, Points};
+use super::fields::Fields;
 use super::scene::{Integrator, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
@@ -193,21 +193,21 @@ impl<F: Fields> Integrator<'_, F> {
         for met in all_met {
             let solid = &scene.solids[met.solid];
             // Find the feelers near this solid's box, and how far the others are from it.
-            let mut here = Vec::new();
-            let mut points = Points::new();
+            let mut here = Vec::with_capacity(met.parts.len());
             for &(cone, span) in &met.parts {
                 let Some(which) = feeler_in[cone] else { continue };
-                let t = feelers[which].t;
+                let (t, around) = (feelers[which].t, &mut all[which]);
                 if t < span.entry {
-                    all[which].gap = all[which].gap.min(span.entry - t);
+                    around.gap = around.gap.min(span.entry - t);
                 } else if t <= span.exit {
                     here.push(which);
-                    points.push(cones[cone].shadow.ray.at(t));
                 }
             }
             if here.is_empty() {
                 continue;
             }
+            let places = here.iter().map(|&which| &feelers[which]);
+            let points = places.map(|feeler| cones[feeler.cone].shadow.ray.at(feeler.t)).collect();
             let [mut distances] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
             let ahead = |index: usize| {

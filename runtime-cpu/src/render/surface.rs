@@ -187,22 +187,22 @@ impl<'a, F: Fields> Integrator<'a, F> {
         for met in all_met {
             let solid = &scene.solids[met.solid];
             // Find the walkers in this solid's box, and how far the others are from it.
-            let mut here = Vec::new();
-            let mut points = Points::new();
+            let mut here = Vec::with_capacity(met.parts.len());
             for &(ray, span) in &met.parts {
                 let Some(which) = walker_on[ray] else { continue };
-                let t = walkers[which].t;
+                let (t, near) = (walkers[which].t, &mut all[which]);
                 if t < span.entry {
-                    all[which].gap = all[which].gap.min(span.entry - t);
+                    near.gap = near.gap.min(span.entry - t);
                 } else if t <= span.exit {
-                    all[which].rest = all[which].rest.max(span.exit - t);
+                    near.rest = near.rest.max(span.exit - t);
                     here.push(which);
-                    points.push(rays[ray].at(t));
                 }
             }
             if here.is_empty() {
                 continue;
             }
+            let places = here.iter().map(|&which| &walkers[which]);
+            let points = places.map(|walker| rays[walker.ray].at(walker.t)).collect();
             // Keep the smallest distance; the earlier solid on a tie.
             let [mut safe] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;

@@ -8,12 +8,12 @@
 
 use super::least_squares::{Fit, Transport, fit as solve};
 use super::{Hiders, Stage, shadow_map};
-use crate::render::{Batch, Batches, Integrator, Scene, camera_ray};
+use crate::render::{Batch, Batches, Integrator, Scene, camera_ray, fill_light_grid};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use vol_compiler::frame::styled::{LightMapTable, stroke_outside};
-use vol_compiler::frame::{Aabb, CameraFrame, Diagnostic, Frame, LightFrame};
+use vol_compiler::frame::{Aabb, CameraFrame, Diagnostic, Frame, Job, LightFrame, LightGrid};
 use vol_compiler::program::style::{LightMap, Stroke, Style};
 
 /// Most pixels that are asked for a colour; of more, some are taken.
@@ -21,6 +21,10 @@ const MAX_PIXELS: usize = 1 << 16;
 
 /// Rays that one thread follows at a time.
 const RAYS: usize = 64;
+
+/// Intervals along the longest side of the grid of depths towards the light: weights are sums over many samples, and
+/// marching from each of them took three times as long as all the rest.
+const INTERVALS: u32 = 128;
 
 /// A light map and how well it meets its strokes.
 #[derive(Clone, Debug)]
@@ -70,9 +74,12 @@ pub(super) fn fit(
     let all: usize = views.iter().map(|(_, pixels)| pixels.len()).sum();
     let stride = all.div_ceil(MAX_PIXELS).max(1);
     let (mut rows, mut wanted) = (Vec::new(), Vec::new());
+    let mut light_grids = vec![None; stage.frame.lights.len()];
+    light_grids[style.light] = depths(stage, light);
     for (camera, pixels) in views {
         let pixels: Vec<Painted> = pixels.into_iter().step_by(stride).collect();
-        let frame = seen_from(stage, style, hiders, camera);
+        let lit = seen_from(stage, style, hiders, camera);
+        let frame = Frame { light_grids: light_grids.clone(), ..lit };
         for (row, color) in weights(stage, &frame, style.light, &table, &pixels).into_iter().zip(&pixels) {
             let white = row.iter().fold([0.0; 3], |sum, (_, w)| [0, 1, 2].map(|i| sum[i] + f64::from(w[i])));
             wanted.push([0, 1, 2].map(|i| (white[i] * color.1[i]) as f32));
@@ -175,6 +182,16 @@ fn for_each_pixel(stroke: &Stroke<f64>, size: [u32; 2], mut call: impl FnMut([u3
             }
         }
     }
+}
+
+/// Optical depths towards the light, where a grid can hold them.
+fn depths(stage: &Stage<'_>, light: &LightFrame) -> Option<Arc<LightGrid>> {
+    let bounds = stage.frame.media_bounds()?;
+    let layout = LightGrid::layout(light, &bounds, INTERVALS)?;
+    let job = Job { shadow_step: bounds.diagonal() / INTERVALS as f32, ..*stage.job };
+    let scene = Scene::new(stage.frame, &job);
+    let (grid, _) = fill_light_grid(layout, &scene, || Batch::new(stage.tapes, stage.frame))?;
+    Some(Arc::new(grid))
 }
 
 /// The frame from a camera, its light with the style's occluders and nothing else of the style.

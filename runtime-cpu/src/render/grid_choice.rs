@@ -10,7 +10,7 @@
 use super::fields::Batch;
 use super::filled_grids::FilledGrids;
 use super::light_grid::{self, Grid};
-use super::pilot::{MOST_BUDGET, Picture, Pilot, choose_step, cost};
+use super::pilot::{MOST_BUDGET, Picture, Pilot, choose_steps, cost};
 use super::scene::{Medium, Scene};
 use crate::interp::Tapes;
 use std::sync::Arc;
@@ -33,17 +33,23 @@ const EVALUATIONS_PER_NODE: f64 = 2.0;
 const TEST_STEP: f32 = 0.5;
 
 /// Part of the allowed error that a grid may have.
-const PART: f32 = 0.5;
+const PART: f32 = 0.7;
 
 /// Part of that error which the next grid is meant to have, if the error falls with the square of the
 /// distance between points.
-const AIM: f32 = 0.7;
+const AIM: f32 = 0.8;
 
 /// The error falls at best with this power: if even that does not suffice there will be no grid.
 const BEST_ORDER: i32 = 3;
 
 /// The next grid has at least this many times as many points along an axis.
 const LEAST_STEP: f32 = 1.1;
+
+/// And at most this many times as many, twice as many up to [`TELLING_INTERVALS`].
+const MOST_STEP: f32 = 4.0;
+
+/// From here on errors say how fine a grid has to be.
+const TELLING_INTERVALS: u32 = 100;
 
 /// Part of the room that is left which rounding of the numbers of points does not exceed.
 const ROOM: f32 = 0.98;
@@ -194,10 +200,11 @@ impl Trial<'_> {
                 choice.grid = Some(grid);
                 break;
             }
-            // As fine as seems needed, as memory allows, and not more than twice as fine at once.
+            // As fine as seems needed and as memory allows; what coarse grids say of fine ones is not much.
             let room = (self.words as f32 / words as f32).cbrt();
             let needed = (error / (AIM * self.target)).sqrt();
-            let finer = needed.clamp(LEAST_STEP, 2.0).min(ROOM * room);
+            let most = if intervals < TELLING_INTERVALS { 2.0 } else { MOST_STEP };
+            let finer = needed.clamp(LEAST_STEP, most).min(ROOM * room);
             if finer < LEAST_STEP || error > self.target * room.powi(BEST_ORDER) {
                 break;
             }
@@ -228,7 +235,7 @@ pub struct Choice {
     pub estimate: f32,
 }
 
-/// Chooses steps ([`choose_step`]) and grids ([`choose_light_grids`]) for a picture with an error of at most
+/// Chooses steps ([`choose_step`](super::choose_step)) and grids ([`choose_light_grids`]) for a picture with an error of at most
 /// `max_error`, and puts the grids into the frame. The result depends on the arguments alone.
 pub fn choose(
     program: &Program,
@@ -250,12 +257,16 @@ pub fn choose_with(
     max_error: f32,
     filled: &mut FilledGrids,
 ) -> Choice {
-    // What grids may add is left to them.
-    let shadows = frame.lights.iter().any(|light| light.shadows);
-    let for_steps = if shadows { (1.0 - PART * PART).sqrt() * max_error } else { max_error };
-    let steps = choose_step(program, frame, size, for_steps);
+    // What grids may add is left to them, where they are worth their while.
+    let [beside_grids, alone] =
+        choose_steps(program, frame, size, [(1.0 - PART * PART).sqrt() * max_error, max_error]);
+    let mut steps = alone;
+    let mut grids = vec![GridChoice::default(); frame.lights.len()];
+    if frame.lights.iter().any(|light| light.shadows) {
+        grids = choose_among(program, frame, &beside_grids.job(size, sampling), max_error, filled);
+        steps = if grids.iter().any(|choice| choice.grid.is_some()) { beside_grids } else { alone };
+    }
     let job = steps.job(size, sampling);
-    let grids = choose_among(program, frame, &job, max_error, filled);
     frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
     let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
     let estimate = taken.fold(steps.estimate, f32::hypot);

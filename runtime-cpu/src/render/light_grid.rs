@@ -3,13 +3,16 @@
 //! A grid holds depths, not the light that arrives: between its points a depth is nearly linear where
 //! `exp(-depth)` is not. One column of points is one ray of the light, whose nodes are those of any other
 //! comb, walls of media included; the depth of a point is the sum of all nodes before it. Between points
-//! depths are cubic along each axis: third order in the distance between points where the density is smooth,
-//! first order at walls. What that means for a scene is measured, see [`super::grid_choice`].
+//! depths are a cubic spline ([`spline`]): fourth order in the distance between points where the density is smooth,
+//! 4e-7 deep inside a homogeneous ball with 129 points, but first order at walls, beside which it swings for a few points.
+//! What that means for a scene is measured, see [`super::grid_choice`].
 //!
-//! * source: algorithms.md §5.1, "Light"; R. G. Keys, "Cubic Convolution Interpolation for Digital Image
-//!   Processing", IEEE TASSP 1981
+//! * source: algorithms.md §5.1, "Light"; M. Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE
+//!   Signal Processing Magazine 1999
 //!
 //! Twin of the look-up: `compiler/src/wgsl/render/light_grid.wgsl`.
+
+mod spline;
 
 use super::camera::Ray;
 use super::comb::MAX_NODES;
@@ -123,12 +126,13 @@ impl<R: Real> Stencil<R> {
     fn new(place: R, last: R, step: usize) -> Self {
         let index = place.floor().min(last - R::ONE);
         let t = place - index;
-        let (half, f) = (R::from_f32(0.5), R::from_f32);
+        let (f, back) = (R::from_f32, R::ONE - t);
+        let (sixth, two_thirds, half) = (f(1.0 / 6.0), f(2.0 / 3.0), f(0.5));
         let weights = [
-            ((R::ONE - half * t) * t - half) * t,
-            ((f(1.5) * t - f(2.5)) * t) * t + R::ONE,
-            ((f(2.0) - f(1.5) * t) * t + half) * t,
-            ((half * t - half) * t) * t,
+            sixth * (back * (back * back)),
+            two_thirds - (t * t) * (R::ONE - half * t),
+            two_thirds - (back * back) * (R::ONE - half * back),
+            sixth * (t * (t * t)),
         ];
         let (index, last) = (index.to_index(), last.to_index());
         Self { at: [-1, 0, 1, 2].map(|k| (index + k).clamp(0, last) as usize * step), weights }
@@ -212,10 +216,12 @@ pub(crate) fn fill<F: Fields<Real = f32>>(
     // Nearly all media have extinction of one colour.
     let (depths, tone, spent) = store(1, |depth, words| words[0] = total(depth));
     if tone.is_one {
+        let depths = spline::coefficients(depths, table.counts, 1);
         return Some((LightGrid { tint: tone.tint(), colored: false, depths, ..table }, spent));
     }
     drop(depths);
     let (depths, _, spent) = store(3, |depth, words| words.copy_from_slice(depth));
+    let depths = spline::coefficients(depths, table.counts, 3);
     Some((LightGrid { tint: [1.0; 3], colored: true, depths, ..table }, spent))
 }
 

@@ -126,8 +126,20 @@ impl StepChoice {
 /// Without media: step 1, nothing done. The result depends on the arguments alone.
 #[must_use]
 pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: f32) -> StepChoice {
+    let [choice] = choose_steps(program, frame, size, [max_error]);
+    choice
+}
+
+/// [`choose_step`] for some errors, the smallest first.
+pub(super) fn choose_steps<const N: usize>(
+    program: &Program,
+    frame: &Frame,
+    size: [u32; 2],
+    max_errors: [f32; N],
+) -> [StepChoice; N] {
+    let max_error = max_errors[0];
     if frame.media.is_empty() {
-        return StepChoice::new(1.0, Quadrature::Midpoint, 0.0);
+        return max_errors.map(|_| StepChoice::new(1.0, Quadrature::Midpoint, 0.0));
     }
     let tapes = Tapes::of_frame(program, frame);
     let pilot = Pilot::new(frame, &tapes, size);
@@ -158,7 +170,7 @@ pub fn choose_step(program: &Program, frame: &Frame, size: [u32; 2], max_error: 
         }
         step *= 0.5;
     }
-    pilot.decide(&rounds, step, max_error)
+    max_errors.map(|max_error| pilot.decide(&rounds, step, max_error))
 }
 
 /// The shortest step with which no ray runs out of nodes on its way to the media and through them, in scene units; 0

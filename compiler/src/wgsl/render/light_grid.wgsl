@@ -66,11 +66,12 @@ struct Stencil {
 fn stencil(place: f32, last: f32, words: u32) -> Stencil {
     let index = min(floor(place), last - 1.0);
     let t = place - index;
+    let back = 1.0 - t;
     let weights = vec4f(
-        (((1.0 - (0.5 * t)) * t) - 0.5) * t,
-        ((((1.5 * t) - 2.5) * t) * t) + 1.0,
-        (((2.0 - (1.5 * t)) * t) + 0.5) * t,
-        (((0.5 * t) - 0.5) * t) * t,
+        0.16666667 * (back * (back * back)),
+        0.6666667 - ((t * t) * (1.0 - (0.5 * t))),
+        0.6666667 - ((back * back) * (1.0 - (0.5 * back))),
+        0.16666667 * (t * (t * t)),
     );
     let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
     return Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);

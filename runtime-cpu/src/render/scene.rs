@@ -251,8 +251,9 @@ pub(crate) struct Batches {
 }
 
 impl Batches {
-    /// About 1000 points at once: enough to pay for the interpreter, small enough for the cache.
-    pub(crate) const DEFAULT: Self = Self { rays: 64, nodes: 16 };
+    /// About 2000 points at once: enough to pay for the interpreter and for the cells of long functions, small enough
+    /// for the cache. Measured beside 64, 256 rays and 8, 32 nodes over solids, tubes and clouds.
+    pub(crate) const DEFAULT: Self = Self { rays: 128, nodes: 16 };
 
     /// Most nodes of a batch, counted once for each medium: what all media hold at them is there at once.
     const MOST_NODES: usize = 65_536;

@@ -32,6 +32,9 @@ pub struct LightGrid {
     pub tint: [f32; 3],
     /// Whether each point has a depth per channel; else it has one for all of them.
     pub colored: bool,
+    /// Whether `depths` holds the coefficients of a cubic spline through the depths; else the depths themselves, between
+    /// which a local cubic is put.
+    pub spline: bool,
     /// Optical depths from the light to each point, over `tint`: `w` runs fastest, then `v`; channels
     /// together.
     pub depths: Vec<f32>,

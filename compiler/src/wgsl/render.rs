@@ -29,7 +29,7 @@
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
 //! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, word of its first cell in `vol_input`, number of its cells |
 //! | after them | `AT_LIGHTS` | 12 words per light of the program, those of the frame first: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none), word of its style's record (0: none) |
-//! | after them | `AT_GRIDS` | 27 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth in `vol_input` |
+//! | after them | `AT_GRIDS` | 28 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth in `vol_input`, whether it is a spline |
 //! | after them | | records of the program's styles, those of the frame's lights first, see [`styles`] |
 //!
 //! `vol_input`, binding 4, holds what may be long, [`input_words`]: the cells, 6 words each, lo xyz, hi xyz (a medium without cells may
@@ -95,7 +95,7 @@ const MEDIUM_WORDS: usize = 9;
 const CELL_WORDS: usize = 6;
 
 /// Words of a grid, without its depths.
-const GRID_WORDS: usize = 27;
+const GRID_WORDS: usize = 28;
 
 /// Depths begin at multiples of this many words: so their places are exact in f32 up to 2^30.
 const GRID_ALIGNMENT: usize = 64;
@@ -578,8 +578,9 @@ fn grid_record(grid: &LightGrid, depths_at: usize) -> [f32; GRID_WORDS] {
     let channels = if grid.colored { 3.0 } else { 1.0 };
     let [u, v, w] = grid.axes;
     let vectors = [grid.origin, u, v, w, grid.lo, grid.scale, counts, grid.tint];
-    let all = [f32::from(u8::from(grid.distant))].into_iter();
-    let all = all.chain(vectors.into_iter().flatten()).chain([channels, depths_at as f32]);
+    let flag = |is: bool| f32::from(u8::from(is));
+    let all = [flag(grid.distant)].into_iter().chain(vectors.into_iter().flatten());
+    let all = all.chain([channels, depths_at as f32, flag(grid.spline)]);
     let mut words = [0.0; GRID_WORDS];
     words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
     words

@@ -24,7 +24,8 @@ pub struct FilledGrids {
     most_bytes: usize,
 }
 
-/// Bytes of a point of a grid, in as many channels as it may have; each thread has those of a batch of columns beside.
+/// Bytes of a point of a grid, in as many channels as it may have. There are two of each, a spline beside the depths, and each
+/// thread has those of a batch of columns.
 const PER_POINT: usize = 3 * size_of::<f32>();
 
 /// Bytes of a column meanwhile: its ray.
@@ -101,7 +102,7 @@ impl FilledGrids {
         let [rows, more, points] = layout.counts.map(|count| count as usize);
         let kept = 2 * size_of::<f32>() * self.words();
         let at_work = rayon::current_num_threads() * Batches::DEFAULT.rays * points * PER_POINT;
-        let bytes = kept + PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work;
+        let bytes = kept + 2 * PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work;
         self.most_bytes = self.most_bytes.max(bytes);
     }
 }

@@ -51,6 +51,12 @@ const MOST_STEP: f32 = 4.0;
 /// From here on errors say how fine a grid has to be.
 const TELLING_INTERVALS: u32 = 100;
 
+/// A spline has at most this part of the error of a local cubic: beside walls it has not.
+const BETTER: f32 = 0.8;
+
+/// Part of its allowed error that a local cubic may have: it serves where walls are, and what they leave is rings.
+const LOCAL: f32 = 0.7;
+
 /// Part of the room that is left which rounding of the numbers of points does not exceed.
 const ROOM: f32 = 0.98;
 
@@ -193,24 +199,36 @@ impl Trial<'_> {
             spent += evaluations as f64;
             per_node = evaluations as f64 / nodes as f64;
             channels = if grid.colored { 3 } else { 1 };
-            let error = self.error(light, &grid);
+            let (grid, error) = self.smoothed(light, grid);
             choice.error = Some(error);
             let words = grid.depths.len();
-            if error <= self.target && words <= self.words {
+            let target = if grid.spline { self.target } else { LOCAL * self.target };
+            if error <= target && words <= self.words {
                 choice.grid = Some(grid);
                 break;
             }
             // As fine as seems needed and as memory allows; what coarse grids say of fine ones is not much.
             let room = (self.words as f32 / words as f32).cbrt();
-            let needed = (error / (AIM * self.target)).sqrt();
+            let needed = (error / (AIM * target)).sqrt();
             let most = if intervals < TELLING_INTERVALS { 2.0 } else { MOST_STEP };
             let finer = needed.clamp(LEAST_STEP, most).min(ROOM * room);
-            if finer < LEAST_STEP || error > self.target * room.powi(BEST_ORDER) {
+            if finer < LEAST_STEP || error > target * room.powi(BEST_ORDER) {
                 break;
             }
             intervals = (finer * intervals as f32) as u32;
         }
         choice
+    }
+
+    /// A grid, or the spline through it where that is needed and clearly better, and its error.
+    fn smoothed(&mut self, light: usize, grid: Arc<LightGrid>) -> (Arc<LightGrid>, f32) {
+        let error = self.error(light, &grid);
+        if error <= LOCAL * self.target || grid.counts.iter().all(|&count| count <= TELLING_INTERVALS) {
+            return (grid, error);
+        }
+        let spline = Arc::new(light_grid::splined(&grid));
+        let smooth = self.error(light, &spline);
+        if smooth < BETTER * error { (spline, smooth) } else { (grid, error) }
     }
 
     /// What a grid of a light changes in the pilot's rays.

@@ -3,12 +3,17 @@
 //! A grid holds depths, not the light that arrives: between its points a depth is nearly linear where
 //! `exp(-depth)` is not. One column of points is one ray of the light, whose nodes are those of any other
 //! comb, walls of media included; the depth of a point is the sum of all nodes before it. Between points
-//! depths are a cubic spline ([`spline`]): fourth order in the distance between points where the density is smooth,
-//! 4e-7 deep inside a homogeneous ball with 129 points, but first order at walls, beside which it swings for a few points.
-//! What that means for a scene is measured, see [`super::grid_choice`].
+//! depths are cubic along each axis, in one of two ways:
 //!
-//! * source: algorithms.md §5.1, "Light"; M. Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE
-//!   Signal Processing Magazine 1999
+//! * a local cubic: third order in the distance between points where the density is smooth, first order at walls;
+//! * a cubic spline ([`spline`]): fourth order, 4e-7 deep inside a homogeneous ball with 129 points where the other is 2e-4
+//!   off; but it swings for some points beside a wall, which draws rings.
+//!
+//! What that means for a scene is measured, and the way chosen, in [`super::grid_choice`].
+//!
+//! * source: algorithms.md §5.1, "Light"; R. G. Keys, "Cubic Convolution Interpolation for Digital Image
+//!   Processing", IEEE TASSP 1981; M. Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal
+//!   Processing Magazine 1999
 //!
 //! Twin of the look-up: `compiler/src/wgsl/render/light_grid.wgsl`.
 
@@ -36,6 +41,7 @@ pub(crate) struct Grid<R> {
     tint: Vec3<R>,
     /// Words from a point to the next one along each axis.
     steps: [usize; 3],
+    spline: bool,
     table: Arc<LightGrid>,
 }
 
@@ -53,6 +59,7 @@ impl<R: Real> Grid<R> {
             last: table.counts.map(|count| R::from_index(count as i32 - 1)),
             tint: vector(table.tint),
             steps: [channels * columns * rows, channels * columns, channels],
+            spline: table.spline,
             table: Arc::clone(table),
         }
     }
@@ -75,7 +82,8 @@ impl<R: Real> Grid<R> {
         }
         // Behind it nothing is added.
         let held = [place[0], place[1], place[2].min(last[2])];
-        let around = [0, 1, 2].map(|axis| Stencil::new(held[axis], last[axis], self.steps[axis]));
+        let around =
+            [0, 1, 2].map(|axis| Stencil::new(held[axis], last[axis], self.steps[axis], self.spline));
         if self.steps[2] == 1 {
             return scale(self.tint, self.channel(0, &around));
         }
@@ -123,17 +131,26 @@ struct Stencil<R> {
 
 impl<R: Real> Stencil<R> {
     /// `place` in 0..`last`, points `step` words apart.
-    fn new(place: R, last: R, step: usize) -> Self {
+    fn new(place: R, last: R, step: usize, spline: bool) -> Self {
         let index = place.floor().min(last - R::ONE);
         let t = place - index;
-        let (f, back) = (R::from_f32, R::ONE - t);
-        let (sixth, two_thirds, half) = (f(1.0 / 6.0), f(2.0 / 3.0), f(0.5));
-        let weights = [
-            sixth * (back * (back * back)),
-            two_thirds - (t * t) * (R::ONE - half * t),
-            two_thirds - (back * back) * (R::ONE - half * back),
-            sixth * (t * (t * t)),
-        ];
+        let (f, half) = (R::from_f32, R::from_f32(0.5));
+        let weights = if spline {
+            let (back, sixth, two_thirds) = (R::ONE - t, f(1.0 / 6.0), f(2.0 / 3.0));
+            [
+                sixth * (back * (back * back)),
+                two_thirds - (t * t) * (R::ONE - half * t),
+                two_thirds - (back * back) * (R::ONE - half * back),
+                sixth * (t * (t * t)),
+            ]
+        } else {
+            [
+                ((R::ONE - half * t) * t - half) * t,
+                ((f(1.5) * t - f(2.5)) * t) * t + R::ONE,
+                ((f(2.0) - f(1.5) * t) * t + half) * t,
+                ((half * t - half) * t) * t,
+            ]
+        };
         let (index, last) = (index.to_index(), last.to_index());
         Self { at: [-1, 0, 1, 2].map(|k| (index + k).clamp(0, last) as usize * step), weights }
     }
@@ -170,7 +187,8 @@ impl Column {
 /// All that a grid depends on beside the media: equal words, equal grids. None if [`fill`] gives none.
 pub(super) fn recipe(table: &LightGrid, step: f32, quadrature: Quadrature) -> Option<Vec<u32>> {
     let column = Column::new(table, step)?;
-    let LightGrid { distant, origin, axes, lo, scale, counts, tint: _, colored: _, depths: _ } = table;
+    let LightGrid { distant, origin, axes, lo, scale, counts, tint: _, colored: _, spline: _, depths: _ } =
+        table;
     let numbers = [origin, &axes[0], &axes[1], &axes[2], lo, scale].into_iter().flatten();
     let mut words: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
     words.extend(counts);
@@ -216,13 +234,19 @@ pub(crate) fn fill<F: Fields<Real = f32>>(
     // Nearly all media have extinction of one colour.
     let (depths, tone, spent) = store(1, |depth, words| words[0] = total(depth));
     if tone.is_one {
-        let depths = spline::coefficients(depths, table.counts, 1);
         return Some((LightGrid { tint: tone.tint(), colored: false, depths, ..table }, spent));
     }
     drop(depths);
     let (depths, _, spent) = store(3, |depth, words| words.copy_from_slice(depth));
-    let depths = spline::coefficients(depths, table.counts, 3);
     Some((LightGrid { tint: [1.0; 3], colored: true, depths, ..table }, spent))
+}
+
+/// The same grid with a spline through its depths.
+pub(super) fn splined(grid: &LightGrid) -> LightGrid {
+    let channels = if grid.colored { 3 } else { 1 };
+    let depths = spline::coefficients(grid.depths.clone(), grid.counts, channels);
+    let LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, .. } = *grid;
+    LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, spline: true, depths }
 }
 
 /// The ray of a column.

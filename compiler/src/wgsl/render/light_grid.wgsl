@@ -26,9 +26,10 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
     // Behind it nothing is added.
     let channels = u32(vol_frame_word(grid + 25u));
     let column = channels * u32(counts.z);
-    let x = stencil(place.x, last.x, column * u32(counts.y));
-    let y = stencil(place.y, last.y, column);
-    let z = stencil(min(place.z, last.z), last.z, channels);
+    let spline = vol_frame_word(grid + 27u) != 0.0;
+    let x = stencil(place.x, last.x, column * u32(counts.y), spline);
+    let y = stencil(place.y, last.y, column, spline);
+    let z = stencil(min(place.z, last.z), last.z, channels, spline);
     let first = u32(vol_frame_word(grid + 26u));
     let tint = word3(grid + 22u);
     var depth = vec3f(0.0);
@@ -63,16 +64,23 @@ struct Stencil {
 }
 
 // `place` in 0..`last`, points `words` words apart.
-fn stencil(place: f32, last: f32, words: u32) -> Stencil {
+fn stencil(place: f32, last: f32, words: u32, spline: bool) -> Stencil {
     let index = min(floor(place), last - 1.0);
     let t = place - index;
+    let local = vec4f(
+        (((1.0 - (0.5 * t)) * t) - 0.5) * t,
+        ((((1.5 * t) - 2.5) * t) * t) + 1.0,
+        (((2.0 - (1.5 * t)) * t) + 0.5) * t,
+        (((0.5 * t) - 0.5) * t) * t,
+    );
     let back = 1.0 - t;
-    let weights = vec4f(
+    let through = vec4f(
         0.16666667 * (back * (back * back)),
         0.6666667 - ((t * t) * (1.0 - (0.5 * t))),
         0.6666667 - ((back * back) * (1.0 - (0.5 * back))),
         0.16666667 * (t * (t * t)),
     );
+    let weights = select(local, through, spline);
     let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
     return Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);
 }

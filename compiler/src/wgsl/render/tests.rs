@@ -183,8 +183,8 @@ fn grids_stand_where_the_records_say() {
         let (counts, tint) = ([2, 2, 5], [0.5, 1.0, 2.0]);
         let colored = depths.len() > 20;
         let (distant, origin, axes) = (true, [1.0; 3], [a, b, c]);
-        let grid =
-            LightGrid { distant, origin, axes, lo: [5.0; 3], scale: [6.0; 3], counts, tint, colored, depths };
+        let (lo, scale, spline) = ([5.0; 3], [6.0; 3], colored);
+        let grid = LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, spline, depths };
         Some(std::sync::Arc::new(grid))
     };
     frame.light_grids = vec![grid(vec![7.0; 20]), None, grid(vec![9.0; 60])];
@@ -205,6 +205,7 @@ fn grids_stand_where_the_records_say() {
     for (record, channels, depth, count) in [(first, 1.0, 7.0, 20), (last, 3.0, 9.0, 60)] {
         assert_eq!((word(record), word(record + 4), word(record + 16)), (1.0, 2.0, 6.0));
         assert_eq!([19, 20, 21, 22, 24, 25].map(|at| word(record + at)), [2.0, 2.0, 5.0, 0.5, 2.0, channels]);
+        assert_eq!(word(record + 27), f32::from(u8::from(channels > 1.0)), "a spline");
         let first = word(record + 26) as usize;
         assert_eq!((first % 64, depth_at(first), depth_at(first + count - 1)), (0, depth, depth));
     }

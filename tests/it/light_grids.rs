@@ -2,8 +2,9 @@
 
 use crate::support::{Body, Draw, compile, compile_file, ensure, examples, frame, on_both, render};
 use libtest_mimic::{Failed, Trial};
+use std::sync::Arc;
 use vol::compare::color_error;
-use vol_compiler::frame::{Frame, Image, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Frame, Image, Job, LightGrid, Quadrature, Sampling};
 use vol_compiler::program::Program;
 
 /// The trials of this file.
@@ -43,6 +44,13 @@ fn with_grids(program: &Program, job: &Job) -> Result<Frame, Failed> {
     let choices = vol_runtime_cpu::choose_light_grids(program, &frame, &large, MAX_ERROR);
     frame.light_grids = choices.into_iter().map(|choice| choice.grid).collect();
     Ok(frame)
+}
+
+/// The same frame, the numbers of its grids read as coefficients: a smoother cloud.
+fn read_as_splines(frame: &Frame) -> Frame {
+    let spline = |grid: &LightGrid| Arc::new(LightGrid { spline: true, ..grid.clone() });
+    let grids = frame.light_grids.iter().map(|grid| grid.as_deref().map(spline));
+    Frame { light_grids: grids.collect(), ..frame.clone() }
 }
 
 /// Relative rms of the difference of two pictures, and its largest value.
@@ -85,6 +93,12 @@ fn looks_like_marching(draw: &Draw<'_>, text: &str, wanted: &[bool]) -> Result<(
     let drawn = draw(&program, &frame, &job)?;
     let (twin, most) = apart(&drawn, &render(&program, &frame, &job, 2)?);
     ensure(twin < 1e-5 && most < 1e-3, || format!("rms {twin:e}, most {most:e} off the CPU"))?;
+    let splines = read_as_splines(&frame);
+    let smooth = draw(&program, &splines, &job)?;
+    let (twin, most) = apart(&smooth, &render(&program, &splines, &job, 2)?);
+    ensure(twin < 1e-5 && most < 1e-3, || format!("splines: rms {twin:e}, most {most:e} off the CPU"))?;
+    let (blur, _) = apart(&smooth, &drawn);
+    ensure(!wanted.contains(&true) || blur > 1e-6, || "splines look like local cubics".to_owned())?;
     let marched = draw(&program, &Frame { light_grids: Vec::new(), ..frame }, &job)?;
     let (error, _) = apart(&drawn, &marched);
     let changes = wanted.contains(&true);

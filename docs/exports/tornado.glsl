@@ -194,7 +194,7 @@ struct Vol_in_Chunk {
 const vec4 vol_uniforms[7] = vec4[7](vec4(0.0, 0.0033465358, 0.0051815165, 0.014443844), vec4(10.0, 30.0, 1.0, 1.1), vec4(4.5, 0.6981317, 0.0, 0.4), vec4(0.2, 2.2, 1.5609045, 0.69090724), vec4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), vec4(1.1264106, 5.0, 0.0, 0.0), vec4(-0.4, 0.8, 0.3, 12.0));
 const vec4 vol_curves[39] = vec4[39](vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, 0.055, 0.0, -0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, -0.5, 1.1295928), vec4(-1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 0.0, 1.0, 2.2591856), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.33686078, 0.9263671), vec4(0.16843039, -0.33686078, 0.9263671, -0.16843039), vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, -0.055, 0.0, 0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, 0.5, 1.1295928), vec4(1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 1.0, 0.0, 2.2591856), vec4(0.0, 2.2, 0.0, 0.0), vec4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), vec4(-0.16843039, 0.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
 const uvec4 vol_permutation[64] = uvec4[64](uvec4(151u, 160u, 137u, 91u), uvec4(90u, 15u, 131u, 13u), uvec4(201u, 95u, 96u, 53u), uvec4(194u, 233u, 7u, 225u), uvec4(140u, 36u, 103u, 30u), uvec4(69u, 142u, 8u, 99u), uvec4(37u, 240u, 21u, 10u), uvec4(23u, 190u, 6u, 148u), uvec4(247u, 120u, 234u, 75u), uvec4(0u, 26u, 197u, 62u), uvec4(94u, 252u, 219u, 203u), uvec4(117u, 35u, 11u, 32u), uvec4(57u, 177u, 33u, 88u), uvec4(237u, 149u, 56u, 87u), uvec4(174u, 20u, 125u, 136u), uvec4(171u, 168u, 68u, 175u), uvec4(74u, 165u, 71u, 134u), uvec4(139u, 48u, 27u, 166u), uvec4(77u, 146u, 158u, 231u), uvec4(83u, 111u, 229u, 122u), uvec4(60u, 211u, 133u, 230u), uvec4(220u, 105u, 92u, 41u), uvec4(55u, 46u, 245u, 40u), uvec4(244u, 102u, 143u, 54u), uvec4(65u, 25u, 63u, 161u), uvec4(1u, 216u, 80u, 73u), uvec4(209u, 76u, 132u, 187u), uvec4(208u, 89u, 18u, 169u), uvec4(200u, 196u, 135u, 130u), uvec4(116u, 188u, 159u, 86u), uvec4(164u, 100u, 109u, 198u), uvec4(173u, 186u, 3u, 64u), uvec4(52u, 217u, 226u, 250u), uvec4(124u, 123u, 5u, 202u), uvec4(38u, 147u, 118u, 126u), uvec4(255u, 82u, 85u, 212u), uvec4(207u, 206u, 59u, 227u), uvec4(47u, 16u, 58u, 17u), uvec4(182u, 189u, 28u, 42u), uvec4(223u, 183u, 170u, 213u), uvec4(119u, 248u, 152u, 2u), uvec4(44u, 154u, 163u, 70u), uvec4(221u, 153u, 101u, 155u), uvec4(167u, 43u, 172u, 9u), uvec4(129u, 22u, 39u, 253u), uvec4(19u, 98u, 108u, 110u), uvec4(79u, 113u, 224u, 232u), uvec4(178u, 185u, 112u, 104u), uvec4(218u, 246u, 97u, 228u), uvec4(251u, 34u, 242u, 193u), uvec4(238u, 210u, 144u, 12u), uvec4(191u, 179u, 162u, 241u), uvec4(81u, 51u, 145u, 235u), uvec4(249u, 14u, 239u, 107u), uvec4(49u, 192u, 214u, 31u), uvec4(181u, 199u, 106u, 157u), uvec4(184u, 84u, 204u, 176u), uvec4(115u, 121u, 50u, 45u), uvec4(127u, 4u, 150u, 254u), uvec4(138u, 236u, 205u, 93u), uvec4(222u, 114u, 67u, 29u), uvec4(24u, 72u, 243u, 141u), uvec4(128u, 195u, 78u, 66u), uvec4(215u, 61u, 156u, 180u));
-const vec4 vol_frame[19] = vec4[19](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.0042843656, 0.008568731), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 0.0, 16.0), vec4(1.0, -0.42399916, 0.8479983, 0.31799936), vec4(12.0, 12.0, 12.0, 1.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
+const vec4 vol_frame[19] = vec4[19](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004639909, 0.009279818), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 0.0, 16.0), vec4(1.0, -0.42399916, 0.8479983, 0.31799936), vec4(12.0, 12.0, 12.0, 1.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
 const vec4 vol_input[24] = vec4[24](vec4(-0.07849332, -0.03100111, -0.08124195, 0.12536836), vec4(0.16850124, 0.10467947, -0.038403668, 0.107851274), vec4(-0.064069755, 0.1727788, 0.3046489, 0.13125731), vec4(-0.008553555, 0.24621235, -0.05407174, 0.21792875), vec4(0.44128785, 0.15875934, 0.010998466, 0.3846571), vec4(-0.051262047, 0.26087677, 0.57784307, 0.18719967), vec4(0.020236308, 0.52379215, -0.05564443, 0.30163896), vec4(0.71370804, 0.21658209, 0.019191828, 0.6642433), vec4(-0.067210674, 0.3401835, 0.84825695, 0.24689835), vec4(0.007948153, 0.8066414, -0.08580606, 0.3764272), vec4(0.98085874, 0.27799374, -0.0131498, 0.9516064), vec4(-0.1115874, 0.41002518, 1.1108938, 0.3100251), vec4(-0.04768115, 1.087319, -0.14611875, 0.44455653), vec4(1.2501811, 0.34455645, -0.0956435, 1.2085621), vec4(-0.1894001, 0.48001888, 1.403938, 0.3815878), vec4(-0.15293887, 1.3255475, -0.23986568, 0.5123142), vec4(1.5619527, 0.41955334, -0.21955688, 1.4378978), vec4(-0.29706544, 0.5414322, 1.7246025, 0.4580031), vec4(-0.29523104, 1.5453081, -0.36114627, 0.5671063), vec4(1.8921922, 0.4970839, -0.37969407, 1.6475452), vec4(-0.43204588, 0.5890693, 2.0649552, 0.53673345), vec4(-0.47268757, 1.7444439, -0.5097059, 0.6070627), vec4(2.2430565, 0.57689345, -0.5739689, 1.8359008), vec4(-0.5940731, 0.62084395, 2.4265997, 0.6175107));
 const float VOL_SMALLEST = 1.1754944e-38;
 const float VOL_LARGEST = 3.4028235e38;
@@ -893,9 +893,9 @@ Vol_CurvePoint vol_describe(vec3 p_13, uint word_12, float t_11) {
     bool is_straight = (_e38 != 0.0);
     float per_speed = (_e26 / sqrt(vv));
     vec3 tangent_1 = (is_straight ? _e11 : (v_6 * per_speed));
-    vec3 sum_6 = (_e11 + tangent_1);
-    float _e46 = vol_dot(_e30, sum_6);
-    float _e47 = vol_dot(_e11, sum_6);
+    vec3 sum_5 = (_e11 + tangent_1);
+    float _e46 = vol_dot(_e30, sum_5);
+    float _e47 = vol_dot(_e11, sum_5);
     float turn = (_e46 / _e47);
     float _e49 = vol_dot(_e14, tangent_1);
     float _e51 = vol_dot(_e30, _e14);
@@ -2314,28 +2314,31 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
     return (_e5 ? 0.0 : 1.0);
 }
 
-Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words) {
+Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words, bool spline) {
     float index_22 = min(floor(place_2), (last_2 - 1.0));
     float t_41 = (place_2 - index_22);
-    vec4 weights_8 = vec4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
+    vec4 local_15 = vec4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
+    float back_1 = (1.0 - t_41);
+    vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_41 * t_41) * (1.0 - (0.5 * t_41)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_41 * (t_41 * t_41))));
+    vec4 weights_8 = (spline ? through : local_15);
     ivec4 around = (ivec4(int(index_22)) + ivec4(-1, 0, 1, 2));
     return Vol_in_Stencil((uvec4(min(max(around, ivec4(0)), ivec4(int(last_2)))) * words), weights_8);
 }
 
 float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, uint channels) {
-    float sum_4 = 0.0;
+    vec4 sums = vec4(0.0);
     uint i_4 = 0u;
     uint j_3 = 0u;
     uint four = min((channels + 3u), 4u);
     bool loop_init_20 = true;
     while(true) {
         if (!loop_init_20) {
-            uint _e72 = i_4;
-            i_4 = (_e72 + 1u);
+            uint _e54 = i_4;
+            i_4 = (_e54 + 1u);
         }
         loop_init_20 = false;
-        uint _e13 = i_4;
-        if ((_e13 < four)) {
+        uint _e14 = i_4;
+        if ((_e14 < four)) {
         } else {
             break;
         }
@@ -2344,36 +2347,35 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
             bool loop_init_21 = true;
             while(true) {
                 if (!loop_init_21) {
-                    uint _e69 = j_3;
-                    j_3 = (_e69 + 1u);
+                    uint _e51 = j_3;
+                    j_3 = (_e51 + 1u);
                 }
                 loop_init_21 = false;
-                uint _e17 = j_3;
-                if ((_e17 < four)) {
+                uint _e18 = j_3;
+                if ((_e18 < four)) {
                 } else {
                     break;
                 }
                 {
-                    uint _e20 = i_4;
-                    uint _e24 = j_3;
-                    uint row = ((first + x_22.at[_e20]) + y_7.at[_e24]);
-                    float _e32 = vol_input_word((row + z_5.at.x));
-                    float _e39 = vol_input_word((row + z_5.at.y));
-                    float ab = ((z_5.weights.x * _e32) + (z_5.weights.y * _e39));
-                    float _e47 = vol_input_word((row + z_5.at.z));
-                    float abc = (ab + (z_5.weights.z * _e47));
-                    float _e55 = vol_input_word((row + z_5.at.w));
-                    float column = (abc + (z_5.weights.w * _e55));
-                    float _e58 = sum_4;
-                    uint _e60 = i_4;
-                    uint _e63 = j_3;
-                    sum_4 = (_e58 + ((x_22.weights[_e60] * y_7.weights[_e63]) * column));
+                    uint _e21 = i_4;
+                    uint _e25 = j_3;
+                    uvec4 row = (uvec4(((first + x_22.at[_e21]) + y_7.at[_e25])) + z_5.at);
+                    float _e32 = vol_input_word(row.x);
+                    float _e34 = vol_input_word(row.y);
+                    float _e36 = vol_input_word(row.z);
+                    float _e38 = vol_input_word(row.w);
+                    vec4 depths = vec4(_e32, _e34, _e36, _e38);
+                    vec4 _e40 = sums;
+                    uint _e42 = i_4;
+                    uint _e45 = j_3;
+                    sums = (_e40 + ((x_22.weights[_e42] * y_7.weights[_e45]) * depths));
                 }
             }
         }
     }
-    float _e74 = sum_4;
-    return max(_e74, 0.0);
+    vec4 _e57 = sums;
+    vec4 weighted = (z_5.weights * _e57);
+    return max((((weighted.x + weighted.y) + weighted.z) + weighted.w), 0.0);
 }
 
 vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
@@ -2404,35 +2406,37 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     }
     float _e74 = vol_frame_word((grid + 25u));
     uint channels_1 = uint(_e74);
-    uint column_1 = (channels_1 * uint(_e13.z));
-    Vol_in_Stencil _e84 = vol_in_stencil(place_9.x, last_5.x, (column_1 * uint(_e13.y)));
-    Vol_in_Stencil _e87 = vol_in_stencil(place_9.y, last_5.y, column_1);
-    Vol_in_Stencil _e92 = vol_in_stencil(min(place_9.z, last_5.z), last_5.z, channels_1);
-    float _e95 = vol_frame_word((grid + 26u));
-    uint first_3 = uint(_e95);
-    vec3 _e99 = vol_in_word3_((grid + 22u));
+    uint column = (channels_1 * uint(_e13.z));
+    float _e81 = vol_frame_word((grid + 27u));
+    bool spline_1 = (_e81 != 0.0);
+    Vol_in_Stencil _e89 = vol_in_stencil(place_9.x, last_5.x, (column * uint(_e13.y)), spline_1);
+    Vol_in_Stencil _e92 = vol_in_stencil(place_9.y, last_5.y, column, spline_1);
+    Vol_in_Stencil _e97 = vol_in_stencil(min(place_9.z, last_5.z), last_5.z, channels_1, spline_1);
+    float _e100 = vol_frame_word((grid + 26u));
+    uint first_3 = uint(_e100);
+    vec3 _e104 = vol_in_word3_((grid + 22u));
     bool loop_init_22 = true;
     while(true) {
         if (!loop_init_22) {
-            uint _e113 = channel;
-            channel = (_e113 + 1u);
+            uint _e118 = channel;
+            channel = (_e118 + 1u);
         }
         loop_init_22 = false;
-        uint _e105 = channel;
-        if ((_e105 < channels_1)) {
+        uint _e110 = channel;
+        if ((_e110 < channels_1)) {
         } else {
             break;
         }
         {
-            uint _e107 = channel;
-            uint _e109 = channel;
-            float _e111 = vol_in_grid_channel((first_3 + _e109), _e84, _e87, _e92, channels_1);
-            depth[_e107] = _e111;
+            uint _e112 = channel;
+            uint _e114 = channel;
+            float _e116 = vol_in_grid_channel((first_3 + _e114), _e89, _e92, _e97, channels_1);
+            depth[_e112] = _e116;
         }
     }
-    vec3 _e115 = depth;
-    float _e117 = depth.x;
-    return (_e99 * ((channels_1 == 1u) ? vec3(_e117) : _e115));
+    vec3 _e120 = depth;
+    float _e122 = depth.x;
+    return (_e104 * ((channels_1 == 1u) ? vec3(_e122) : _e120));
 }
 
 float vol_in_first_node(float shift) {
@@ -4145,11 +4149,11 @@ float vol_distance(vec3 p_22) {
 }
 
 float vol_density(vec3 p_23) {
-    float sum_5 = 0.0;
-    float _e3 = sum_5;
+    float sum_4 = 0.0;
+    float _e3 = sum_4;
     float _e7 = vol_f7_density_cloud(p_23.x, p_23.y, p_23.z);
-    sum_5 = (_e3 + max(_e7, 0.0));
-    float _e11 = sum_5;
+    sum_4 = (_e3 + max(_e7, 0.0));
+    float _e11 = sum_4;
     return _e11;
 }
 

@@ -131,7 +131,7 @@ var<private> vol_permutation: array<vec4<u32>, 64> = array<vec4<u32>, 64>(
 fn vol_permutation_word(index: u32) -> u32 { return vol_permutation[index >> 2u][index & 3u]; }
 var<private> vol_frame: array<vec4<f32>, 19> = array<vec4<f32>, 19>(
   vec4<f32>(0.0f, 0.0f, 960.0f, 540.0f),
-  vec4<f32>(960.0f, 540.0f, 0.0042843656f, 0.008568731f),
+  vec4<f32>(960.0f, 540.0f, 0.004639909f, 0.009279818f),
   vec4<f32>(0.0f, 1.1f, 4.5f, 0.0f),
   vec4<f32>(0.0f, (-1.0f), 0.6470582f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.36397022f, 0.0f),
@@ -2251,9 +2251,10 @@ fn vol_in_grid_depth(grid: u32, point: vec3f) -> vec3f {
     // Behind it nothing is added.
     let channels = u32(vol_frame_word(grid + 25u));
     let column = channels * u32(counts.z);
-    let x = vol_in_stencil(place.x, last.x, column * u32(counts.y));
-    let y = vol_in_stencil(place.y, last.y, column);
-    let z = vol_in_stencil(min(place.z, last.z), last.z, channels);
+    let spline = vol_frame_word(grid + 27u) != 0.0;
+    let x = vol_in_stencil(place.x, last.x, column * u32(counts.y), spline);
+    let y = vol_in_stencil(place.y, last.y, column, spline);
+    let z = vol_in_stencil(min(place.z, last.z), last.z, channels, spline);
     let first = u32(vol_frame_word(grid + 26u));
     let tint = vol_in_word3(grid + 22u);
     var depth = vec3f(0.0);
@@ -2267,17 +2268,17 @@ fn vol_in_grid_depth(grid: u32, point: vec3f) -> vec3f {
 fn vol_in_grid_channel(first: u32, x: Vol_in_Stencil, y: Vol_in_Stencil, z: Vol_in_Stencil, channels: u32) -> f32 {
     // Always 4, which no driver knows: unrolled wherever it is asked for, this compiles for minutes.
     let four = min(channels + 3u, 4u);
-    var sum = 0.0;
+    // Four sums side by side, which are one vector.
+    var sums = vec4f(0.0);
     for (var i = 0u; i < four; i++) {
         for (var j = 0u; j < four; j++) {
-            let row = (first + x.at[i]) + y.at[j];
-            let ab = (z.weights.x * vol_input_word(row + z.at.x)) + (z.weights.y * vol_input_word(row + z.at.y));
-            let abc = ab + (z.weights.z * vol_input_word(row + z.at.z));
-            let column = abc + (z.weights.w * vol_input_word(row + z.at.w));
-            sum += (x.weights[i] * y.weights[j]) * column;
+            let row = vec4u((first + x.at[i]) + y.at[j]) + z.at;
+            let depths = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
+            sums += (x.weights[i] * y.weights[j]) * depths;
         }
     }
-    return max(sum, 0.0);
+    let weighted = z.weights * sums;
+    return max(((weighted.x + weighted.y) + weighted.z) + weighted.w, 0.0);
 }
 
 // The four points around a place along one axis.
@@ -2288,15 +2289,23 @@ struct Vol_in_Stencil {
 }
 
 // `place` in 0..`last`, points `words` words apart.
-fn vol_in_stencil(place: f32, last: f32, words: u32) -> Vol_in_Stencil {
+fn vol_in_stencil(place: f32, last: f32, words: u32, spline: bool) -> Vol_in_Stencil {
     let index = min(floor(place), last - 1.0);
     let t = place - index;
-    let weights = vec4f(
+    let local = vec4f(
         (((1.0 - (0.5 * t)) * t) - 0.5) * t,
         ((((1.5 * t) - 2.5) * t) * t) + 1.0,
         (((2.0 - (1.5 * t)) * t) + 0.5) * t,
         (((0.5 * t) - 0.5) * t) * t,
     );
+    let back = 1.0 - t;
+    let through = vec4f(
+        0.16666667 * (back * (back * back)),
+        0.6666667 - ((t * t) * (1.0 - (0.5 * t))),
+        0.6666667 - ((back * back) * (1.0 - (0.5 * back))),
+        0.16666667 * (t * (t * t)),
+    );
+    let weights = select(local, through, spline);
     let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
     return Vol_in_Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);
 }

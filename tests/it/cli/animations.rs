@@ -80,7 +80,7 @@ render { size: (96, 54), fps: 10, samples: 4 }
     let [kept, anew] = both_ways(sandbox, "around.vol", "--backend cpu --max-error 0.05", "same-grids")?;
     equal(kept["light_grids"][0]["depths"]["grid"].is_array(), true)?;
     equal(count(&anew, "same_grids")?, 0)?;
-    // The first grid that is tried is there for each frame but one.
-    equal(count(&kept, "same_grids")? >= 3, true)?;
+    // The first frame is sampled finer; those after it try the same grid first.
+    equal(count(&kept, "same_grids")? >= 2, true)?;
     equal(&kept["light_grids"], &anew["light_grids"])
 }

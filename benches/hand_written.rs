@@ -1,6 +1,6 @@
-//! vol against the first paper's method written by hand: the three scenes of M. Moinet, "Sculpting procedural noise" (2022), in
-//! WGSL for this purpose (`hand_written/*.wgsl`: a sphere-marched tube, a fixed step, no grid), on the same device. Markdown on standard output, for
-//! docs/backends.md.
+//! vol's GPU backend against the method of M. Moinet, "Sculpting procedural noise" (2022), written by hand for this purpose: its
+//! three scenes in WGSL (`hand_written/*.wgsl`: a sphere-marched tube, a fixed step, no grid), on the same device. Markdown
+//! on standard output, for docs/backends.md.
 //!
 //! ```text
 //! cargo bench --bench hand_written -- [tornado] [solar_flare] [galaxy] [160x90]
@@ -28,7 +28,8 @@ const SIZE: [u32; 2] = [160, 90];
 /// Errors that vol is asked for, falling.
 const MAX_ERRORS: [f32; 3] = [3e-2, 1e-2, 3e-3];
 
-/// Places of the reference, its most levels beyond the first, and the part of the smallest error that the last may change it by.
+/// Places of the reference, its most levels beyond the first, and what part of the smallest error the last may change
+/// it by.
 const PLACES: usize = 1024;
 const LEVELS: u32 = 4;
 const MARGIN: f32 = 0.25;
@@ -186,7 +187,8 @@ fn summary(name: &str, ours: &Ours, ladders: &[Ladder]) -> String {
     )
 }
 
-/// The time at an error, in proportion between the logarithms of the two pictures around it; none if no picture is as good.
+/// The time at an error, in proportion between the logarithms of the two pictures around it; none if no picture is as
+/// good.
 fn time_at(runs: &[(f32, Run)], error: f64) -> Option<f64> {
     let reached = runs.iter().position(|(_, run)| run.error <= error)?;
     let (_, fine) = runs[reached];

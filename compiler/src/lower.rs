@@ -31,6 +31,7 @@ use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
 use crate::program::{Curve, Measure, Program, Slot, Slot3, TubeSizes};
 use crate::skip::{Skip, Skips};
+use crate::tape::KeptTapes;
 use std::collections::{HashMap, HashSet};
 use value::{Environment, Value};
 use vol_language::diag::Diagnostic;
@@ -269,6 +270,7 @@ impl<'a> Lowerer<'a> {
             report,
             origins: std::mem::take(&mut self.origins),
             skips: self.skips,
+            tapes: KeptTapes::default(),
             module,
         }
     }

@@ -9,6 +9,7 @@ pub mod style;
 use crate::ir::origin::Origins;
 use crate::ir::{FunctionId, Module};
 use crate::skip::Skips;
+use crate::tape::KeptTapes;
 use vol_language::source::Span;
 use vol_language::ty::Type;
 
@@ -59,6 +60,8 @@ pub struct Program {
     pub origins: Vec<Origins>,
     /// What may be left out of the work.
     pub skips: Skips,
+    /// The functions as tapes, once somebody has asked for them.
+    pub tapes: KeptTapes,
 }
 
 /// A param and where its components enter the frame function.

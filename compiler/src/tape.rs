@@ -29,7 +29,7 @@ mod alloc;
 
 use crate::ir::{Function, ValueId};
 use crate::ops::Op;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Most operands that an operation has.
 pub const MAX_OPERANDS: usize = 6;
@@ -43,6 +43,24 @@ impl Register {
     #[must_use]
     pub fn index(self) -> usize {
         self.0 as usize
+    }
+}
+
+/// The tapes of all functions of a program, kept from when somebody first asks for them. A copy starts without any: whoever
+/// copies a program may change its functions.
+#[derive(Debug, Default)]
+pub struct KeptTapes(OnceLock<Arc<[Tape]>>);
+
+impl KeptTapes {
+    /// The tapes, by index of the function; made by `make` if nobody has asked before.
+    pub fn get_or_make(&self, make: impl FnOnce() -> Arc<[Tape]>) -> Arc<[Tape]> {
+        self.0.get_or_init(make).clone()
+    }
+}
+
+impl Clone for KeptTapes {
+    fn clone(&self) -> Self {
+        Self::default()
     }
 }
 
@@ -285,6 +303,20 @@ mod tests {
         let unchanged = |i: usize| registers[i].map(f64::to_bits) == Some(inputs[i].to_bits());
         assert!(!inside || (0..inputs.len()).all(unchanged), "a body keeps its inputs");
         tape.outputs.iter().map(|r| registers[r.index()].expect("outputs were written")).collect()
+    }
+
+    #[test]
+    fn tapes_are_made_once_and_anew_for_a_copy() {
+        let made = std::cell::Cell::new(0);
+        let make = || -> Arc<[Tape]> {
+            made.set(made.get() + 1);
+            Arc::new([])
+        };
+        let kept = KeptTapes::default();
+        assert!(Arc::ptr_eq(&kept.get_or_make(make), &kept.get_or_make(make)));
+        assert_eq!(made.get(), 1);
+        kept.clone().get_or_make(make);
+        assert_eq!(made.get(), 2);
     }
 
     #[test]

@@ -28,6 +28,7 @@ use pulp::Simd;
 use rayon::prelude::*;
 use std::array;
 use std::ops::Range;
+use std::sync::Arc;
 use vol_compiler::curve::CurveTable;
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::{FunctionId, Module};
@@ -42,17 +43,18 @@ pub const LANES: usize = 128;
 /// The tapes of all functions of a program.
 #[derive(Debug)]
 pub struct Tapes {
-    tapes: Vec<Tape>,
+    tapes: Arc<[Tape]>,
     isa: Isa,
     /// What they become in parts of space, in the one frame that they are for.
     local: Option<LocalTapes>,
 }
 
 impl Tapes {
-    /// Prepares a program.
+    /// Prepares a program. The tapes are kept with it: the next time this does nothing.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        Self::of_module(&program.module)
+        let tapes = program.tapes.get_or_make(|| tapes(&program.module));
+        Self { tapes, isa: Isa::best(), local: None }
     }
 
     /// Prepares a program to be evaluated in one frame, and in no other: functions are shortened where the frame's
@@ -67,7 +69,7 @@ impl Tapes {
     /// Prepares a verified module.
     #[must_use]
     pub fn of_module(module: &Module) -> Self {
-        Self { tapes: module.functions.par_iter().map(Tape::new).collect(), isa: Isa::best(), local: None }
+        Self { tapes: tapes(module), isa: Isa::best(), local: None }
     }
 
     /// The same for other vector instructions; results are the same bits.
@@ -81,6 +83,10 @@ impl Tapes {
     pub fn tape(&self, function: FunctionId) -> &Tape {
         &self.tapes[function.index()]
     }
+}
+
+fn tapes(module: &Module) -> Arc<[Tape]> {
+    module.functions.par_iter().map(Tape::new).collect()
 }
 
 /// Evaluates functions in one frame; one thread's own.

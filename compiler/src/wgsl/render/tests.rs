@@ -4,6 +4,7 @@ use crate::ir::FunctionId;
 use crate::ir::text;
 use crate::program::{Camera, Extent, Light, LightKind, Medium, Object, Render, Slot};
 use crate::skip::Skips;
+use crate::tape::KeptTapes;
 use vol_language::source::Span;
 
 const NOWHERE: Slot = Slot(0);
@@ -64,6 +65,7 @@ fn program(objects: usize, media: usize) -> Program {
         report: Vec::new(),
         origins: Vec::new(),
         skips: Skips::ALL,
+        tapes: KeptTapes::default(),
     }
 }
 

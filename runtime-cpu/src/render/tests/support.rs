@@ -10,6 +10,7 @@ use vol_compiler::ir::{Function, FunctionId, Inst, Module, Number, ValueId};
 use vol_compiler::ops::Op;
 use vol_compiler::program::{Camera, Extent, Lighting, Medium, Object, Program, Render, Slot};
 use vol_compiler::skip::Skips;
+use vol_compiler::tape::KeptTapes;
 
 /// A function in the making.
 pub(super) struct Body {
@@ -177,6 +178,7 @@ impl World {
             report: Vec::new(),
             origins: Vec::new(),
             skips: Skips::ALL,
+            tapes: KeptTapes::default(),
         };
         let frame = Frame {
             uniforms: Vec::new(),

@@ -62,6 +62,9 @@ pub struct Quadratic {
 /// | 43-45 | `end_low` | what rounding took from `end` |
 /// | 46-48 | `end_tangent` | unit tangent at t = 1, along the curve |
 /// | 49-51 | `tangent_before` | unit tangent with which the piece before ends, along the curve; for the first piece that of the last |
+/// | 52-54 | `lo` | smallest corner of a box around the piece, with room for rounding, scene units |
+/// | 55-57 | `hi` | largest corner of it |
+/// | 58-59 | | 0, so that each piece begins a row of four words |
 ///
 /// Where two pieces touch, both have the same words for the point, and for the tangent if it does not turn by
 /// more than 1e-8: whatever is decided by them there falls on one side (`algorithms.md` §3.1).
@@ -97,11 +100,13 @@ pub struct Piece {
     pub end_low: [f32; 3],
     pub end_tangent: [f32; 3],
     pub tangent_before: [f32; 3],
+    pub lo: [f32; 3],
+    pub hi: [f32; 3],
 }
 
 impl Piece {
     /// Words of one piece in the buffer `vol_curves`.
-    pub const WORDS: usize = 52;
+    pub const WORDS: usize = 60;
 
     /// The piece as words, in field order.
     pub fn words(&self) -> [f32; Self::WORDS] {
@@ -135,8 +140,8 @@ impl Piece {
             self.after,
             self.curve_length,
         ]);
-        let ends = [self.end, self.end_low, self.end_tangent, self.tangent_before];
-        words[40..].copy_from_slice(ends.as_flattened());
+        let ends = [self.end, self.end_low, self.end_tangent, self.tangent_before, self.lo, self.hi];
+        words[40..58].copy_from_slice(ends.as_flattened());
         words
     }
 }
@@ -463,7 +468,7 @@ impl Part {
         let (origin, origin_low) = split_digits(self.origin);
         let (end, end_low) = split_digits(self.end);
         let &Place { normal, offset, length, neighbours, .. } = place;
-        Piece {
+        let piece = Piece {
             origin,
             origin_low,
             b1: round(self.b1),
@@ -492,7 +497,11 @@ impl Part {
             end_low,
             end_tangent: round(end_tangent),
             tangent_before: round(tangent_before),
-        }
+            lo: [0.0; 3],
+            hi: [0.0; 3],
+        };
+        let (lo, hi) = boxes::around(&piece);
+        Piece { lo, hi, ..piece }
     }
 }
 

@@ -10,6 +10,7 @@ mod light_grid;
 pub mod styled;
 mod tube;
 
+pub use extent::MOST_CELLS;
 pub use inputs::Inputs;
 pub use light_grid::LightGrid;
 
@@ -167,7 +168,7 @@ pub struct MediumFrame {
     /// The region is inside.
     pub bounds: Aabb,
     /// The inside is in these boxes: for a tube one per part of its axis, with little outside
-    /// between them; for most shapes one, `bounds`. At most 64.
+    /// between them; for most shapes one, `bounds`. At most [`MOST_CELLS`].
     pub cells: Vec<Aabb>,
 }
 

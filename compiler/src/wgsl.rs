@@ -200,7 +200,11 @@ fn definitions(
     for &i in indices {
         body.push_str(&expr::function(i, &module.functions[i], rows, notes));
     }
-    format!("{}\n{body}", prelude(&format!("{body}{user}")))
+    let prelude = prelude(&format!("{body}{user}"));
+    // Arrays cannot be empty.
+    let curves = format!("const VOL_CURVES: u32 = {}u;\n\n", rows.curve_count.max(1));
+    let curves = if prelude.contains("VOL_CURVES") { &curves } else { "" };
+    format!("{curves}{prelude}\n{body}")
 }
 
 fn evaluation_entry(id: FunctionId, function: &Function) -> String {

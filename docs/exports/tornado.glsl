@@ -58,6 +58,13 @@ struct Vol_CurveSlopes {
 struct Vol_Curve {
     uint first;
     uint count;
+    uint number;
+};
+struct Vol_LastSearch {
+    bool some;
+    vec3 point;
+    Vol_Search found;
+    float reach;
 };
 struct Vol_Out10_ {
     float v0_;
@@ -144,13 +151,18 @@ struct Vol_in_Stencil {
     uvec4 at;
     vec4 weights;
 };
+struct Vol_in_Runs {
+    ivec4 first;
+    ivec4 last;
+};
 struct Vol_in_Comb {
     float step_;
     float offset;
     float end;
     int first;
     int last;
-    ivec2 ranges[1];
+    Vol_in_Runs all_[1];
+    ivec2 runs[1];
     float before[1];
     float own[1];
 };
@@ -177,11 +189,15 @@ struct Vol_in_Glow {
 struct Vol_in_StyledRays {
     float none;
 };
+struct Vol_in_PanelEnd {
+    Vol_in_Interior interior;
+    vec3 source;
+    float distance_;
+    bool is_node;
+};
 struct Vol_in_Panels {
-    Vol_in_Interior interiors[4];
-    vec3 sources[4];
-    vec2 walls[1];
-    uvec2 ends[1];
+    Vol_in_PanelEnd starts[1];
+    Vol_in_PanelEnd stops[1];
     vec2 masses[1];
     vec3 depth;
     bool some;
@@ -192,10 +208,11 @@ struct Vol_in_Chunk {
     vec3 depth;
 };
 const vec4 vol_uniforms[7] = vec4[7](vec4(0.0, 0.0033465358, 0.0051815165, 0.014443844), vec4(10.0, 30.0, 1.0, 1.1), vec4(4.5, 0.6981317, 0.0, 0.4), vec4(0.2, 2.2, 1.5609045, 0.69090724), vec4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), vec4(1.1264106, 5.0, 0.0, 0.0), vec4(-0.4, 0.8, 0.3, 12.0));
-const vec4 vol_curves[39] = vec4[39](vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, 0.055, 0.0, -0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, -0.5, 1.1295928), vec4(-1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 0.0, 1.0, 2.2591856), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.33686078, 0.9263671), vec4(0.16843039, -0.33686078, 0.9263671, -0.16843039), vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, -0.055, 0.0, 0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, 0.5, 1.1295928), vec4(1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 1.0, 0.0, 2.2591856), vec4(0.0, 2.2, 0.0, 0.0), vec4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), vec4(-0.16843039, 0.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
+const vec4 vol_curves[45] = vec4[45](vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, 0.055, 0.0, -0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, -0.5, 1.1295928), vec4(-1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 0.0, 1.0, 2.2591856), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.33686078, 0.9263671), vec4(0.16843039, -0.33686078, 0.9263671, -0.16843039), vec4(-4.5778493e-6, -4.598711e-6, -4.576359e-6, 0.20000459), vec4(1.1000047, 0.10000458, 0.0, 0.0), vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, -0.055, 0.0, 0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, 0.5, 1.1295928), vec4(1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 1.0, 0.0, 2.2591856), vec4(0.0, 2.2, 0.0, 0.0), vec4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), vec4(-0.16843039, 0.0, 1.0, 0.0), vec4(-4.5778493e-6, 1.0999953, -4.576359e-6, 0.20000459), vec4(2.2000048, 0.10000458, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
 const uvec4 vol_permutation[64] = uvec4[64](uvec4(151u, 160u, 137u, 91u), uvec4(90u, 15u, 131u, 13u), uvec4(201u, 95u, 96u, 53u), uvec4(194u, 233u, 7u, 225u), uvec4(140u, 36u, 103u, 30u), uvec4(69u, 142u, 8u, 99u), uvec4(37u, 240u, 21u, 10u), uvec4(23u, 190u, 6u, 148u), uvec4(247u, 120u, 234u, 75u), uvec4(0u, 26u, 197u, 62u), uvec4(94u, 252u, 219u, 203u), uvec4(117u, 35u, 11u, 32u), uvec4(57u, 177u, 33u, 88u), uvec4(237u, 149u, 56u, 87u), uvec4(174u, 20u, 125u, 136u), uvec4(171u, 168u, 68u, 175u), uvec4(74u, 165u, 71u, 134u), uvec4(139u, 48u, 27u, 166u), uvec4(77u, 146u, 158u, 231u), uvec4(83u, 111u, 229u, 122u), uvec4(60u, 211u, 133u, 230u), uvec4(220u, 105u, 92u, 41u), uvec4(55u, 46u, 245u, 40u), uvec4(244u, 102u, 143u, 54u), uvec4(65u, 25u, 63u, 161u), uvec4(1u, 216u, 80u, 73u), uvec4(209u, 76u, 132u, 187u), uvec4(208u, 89u, 18u, 169u), uvec4(200u, 196u, 135u, 130u), uvec4(116u, 188u, 159u, 86u), uvec4(164u, 100u, 109u, 198u), uvec4(173u, 186u, 3u, 64u), uvec4(52u, 217u, 226u, 250u), uvec4(124u, 123u, 5u, 202u), uvec4(38u, 147u, 118u, 126u), uvec4(255u, 82u, 85u, 212u), uvec4(207u, 206u, 59u, 227u), uvec4(47u, 16u, 58u, 17u), uvec4(182u, 189u, 28u, 42u), uvec4(223u, 183u, 170u, 213u), uvec4(119u, 248u, 152u, 2u), uvec4(44u, 154u, 163u, 70u), uvec4(221u, 153u, 101u, 155u), uvec4(167u, 43u, 172u, 9u), uvec4(129u, 22u, 39u, 253u), uvec4(19u, 98u, 108u, 110u), uvec4(79u, 113u, 224u, 232u), uvec4(178u, 185u, 112u, 104u), uvec4(218u, 246u, 97u, 228u), uvec4(251u, 34u, 242u, 193u), uvec4(238u, 210u, 144u, 12u), uvec4(191u, 179u, 162u, 241u), uvec4(81u, 51u, 145u, 235u), uvec4(249u, 14u, 239u, 107u), uvec4(49u, 192u, 214u, 31u), uvec4(181u, 199u, 106u, 157u), uvec4(184u, 84u, 204u, 176u), uvec4(115u, 121u, 50u, 45u), uvec4(127u, 4u, 150u, 254u), uvec4(138u, 236u, 205u, 93u), uvec4(222u, 114u, 67u, 29u), uvec4(24u, 72u, 243u, 141u), uvec4(128u, 195u, 78u, 66u), uvec4(215u, 61u, 156u, 180u));
-const vec4 vol_frame[19] = vec4[19](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004639909, 0.009279818), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 0.0, 16.0), vec4(1.0, -0.42399916, 0.8479983, 0.31799936), vec4(12.0, 12.0, 12.0, 1.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
-const vec4 vol_input[24] = vec4[24](vec4(-0.07849332, -0.03100111, -0.08124195, 0.12536836), vec4(0.16850124, 0.10467947, -0.038403668, 0.107851274), vec4(-0.064069755, 0.1727788, 0.3046489, 0.13125731), vec4(-0.008553555, 0.24621235, -0.05407174, 0.21792875), vec4(0.44128785, 0.15875934, 0.010998466, 0.3846571), vec4(-0.051262047, 0.26087677, 0.57784307, 0.18719967), vec4(0.020236308, 0.52379215, -0.05564443, 0.30163896), vec4(0.71370804, 0.21658209, 0.019191828, 0.6642433), vec4(-0.067210674, 0.3401835, 0.84825695, 0.24689835), vec4(0.007948153, 0.8066414, -0.08580606, 0.3764272), vec4(0.98085874, 0.27799374, -0.0131498, 0.9516064), vec4(-0.1115874, 0.41002518, 1.1108938, 0.3100251), vec4(-0.04768115, 1.087319, -0.14611875, 0.44455653), vec4(1.2501811, 0.34455645, -0.0956435, 1.2085621), vec4(-0.1894001, 0.48001888, 1.403938, 0.3815878), vec4(-0.15293887, 1.3255475, -0.23986568, 0.5123142), vec4(1.5619527, 0.41955334, -0.21955688, 1.4378978), vec4(-0.29706544, 0.5414322, 1.7246025, 0.4580031), vec4(-0.29523104, 1.5453081, -0.36114627, 0.5671063), vec4(1.8921922, 0.4970839, -0.37969407, 1.6475452), vec4(-0.43204588, 0.5890693, 2.0649552, 0.53673345), vec4(-0.47268757, 1.7444439, -0.5097059, 0.6070627), vec4(2.2430565, 0.57689345, -0.5739689, 1.8359008), vec4(-0.5940731, 0.62084395, 2.4265997, 0.6175107));
+const vec4 vol_frame[43] = vec4[43](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004639909, 0.009279818), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 16.0, 1.0), vec4(-0.42399916, 0.8479983, 0.31799936, 12.0), vec4(12.0, 12.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, -0.07849332), vec4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), vec4(0.10467947, -0.038403668, 0.107851274, -0.064069755), vec4(0.1727788, 0.3046489, 0.13125731, -0.008553555), vec4(0.24621235, -0.05407174, 0.21792875, 0.44128785), vec4(0.15875934, 0.010998466, 0.3846571, -0.051262047), vec4(0.26087677, 0.57784307, 0.18719967, 0.020236308), vec4(0.52379215, -0.05564443, 0.30163896, 0.71370804), vec4(0.21658209, 0.019191828, 0.6642433, -0.067210674), vec4(0.3401835, 0.84825695, 0.24689835, 0.007948153), vec4(0.8066414, -0.08580606, 0.3764272, 0.98085874), vec4(0.27799374, -0.0131498, 0.9516064, -0.1115874), vec4(0.41002518, 1.1108938, 0.3100251, -0.04768115), vec4(1.087319, -0.14611875, 0.44455653, 1.2501811), vec4(0.34455645, -0.0956435, 1.2085621, -0.1894001), vec4(0.48001888, 1.403938, 0.3815878, -0.15293887), vec4(1.3255475, -0.23986568, 0.5123142, 1.5619527), vec4(0.41955334, -0.21955688, 1.4378978, -0.29706544), vec4(0.5414322, 1.7246025, 0.4580031, -0.29523104), vec4(1.5453081, -0.36114627, 0.5671063, 1.8921922), vec4(0.4970839, -0.37969407, 1.6475452, -0.43204588), vec4(0.5890693, 2.0649552, 0.53673345, -0.47268757), vec4(1.7444439, -0.5097059, 0.6070627, 2.2430565), vec4(0.57689345, -0.5739689, 1.8359008, -0.5940731), vec4(0.62084395, 2.4265997, 0.6175107, 0.0));
+const vec4 vol_input[1] = vec4[1](vec4(0.0, 0.0, 0.0, 0.0));
+const uint VOL_CURVES = 1u;
 const float VOL_SMALLEST = 1.1754944e-38;
 const float VOL_LARGEST = 3.4028235e38;
 const float VOL_TURNS_PER_RADIAN = 0.15915494;
@@ -207,11 +224,13 @@ const float VOL_FIELD = 4194303.0;
 const float VOL_WHOLES = 16777216.0;
 const float VOL_PRODUCT = 1099511600000.0;
 const float VOL_OCTAVES = 32.0;
-const uint VOL_PIECE_WORDS = 52u;
+const uint VOL_PIECE_WORDS = 60u;
 const float VOL_TINY = 1e-30;
 const float VOL_FAR = 1e18;
 const float VOL_REACH = 100000000.0;
 const float VOL_STRETCH = 1000000.0;
+const float VOL_LOOSE = 1.00001;
+const float VOL_SLACK = 4e-6;
 const float VOL_LEAN = 0.001;
 const float VOL_LEAST_STRETCH = 0.05;
 const float VOL_LARGEST_RATE = 1000000000000000.0;
@@ -235,17 +254,20 @@ const uint VOL_IN_MEDIUM_SLOTS = 1u;
 const uint VOL_IN_LIGHT_SLOTS = 1u;
 const uint VOL_IN_TRANSFER_SIZE = 256u;
 const uint VOL_IN_OBJECT_WORDS = 8u;
-const uint VOL_IN_MEDIUM_WORDS = 9u;
+const uint VOL_IN_MEDIUM_WORDS = 8u;
 const uint VOL_IN_CELL_WORDS = 6u;
+const uint VOL_IN_CELLS_WORDS = 384u;
 const uint VOL_IN_LIGHT_WORDS = 12u;
 const uint VOL_IN_PIXEL_WORDS = 15u;
 const uint VOL_IN_AT_OBJECTS = 27u;
 const uint VOL_IN_AT_MEDIA = 27u;
-const uint VOL_IN_AT_LIGHTS = 36u;
+const uint VOL_IN_AT_LIGHTS = 35u;
+const uint VOL_IN_AT_CELLS = 75u;
 const bool VOL_IN_CORRECTED = true;
 const bool VOL_IN_SOFT_LIGHTS = false;
 const bool VOL_IN_OCCLUDING_LIGHTS = false;
 const bool VOL_IN_LIGHT_GRIDS = true;
+const bool VOL_IN_LIT_MEDIA = true;
 const bool VOL_IN_STYLES = false;
 const bool VOL_IN_MARCHED_SHAFTS = false;
 const float VOL_IN_FAR = 4000000.0;
@@ -279,6 +301,7 @@ const vec2 VOL_IN_PLACES[19] = vec2[19](vec2(0.0, 0.0), vec2(0.4, 0.0), vec2(0.2
 const uint VOL_IN_PLACE_COUNT = 19u;
 const float VOL_IN_LACK = 0.05;
 const float VOL_IN_BLUR = 0.3;
+const int VOL_IN_NO_NODE = 2147483647;
 const uint VOL_IN_THE_NODE = 0u;
 const uint VOL_IN_NO_MORE = 3u;
 const uint VOL_IN_A_GAP = 1u;
@@ -286,18 +309,20 @@ const float VOL_IN_LEAST_SHARE = 1e-6;
 const uint VOL_IN_A_WALL = 2u;
 const uint VOL_IN_CHORD_ROUNDS = 3u;
 const uint VOL_IN_WALL_ROUNDS = 5u;
-const uint VOL_IN_AFTER = 1u;
-const uint VOL_IN_WALL = 2u;
+const uint VOL_IN_STOP_END = 1u;
+const uint VOL_IN_START_END = 0u;
 const float VOL_IN_WEIGHTS[5] = float[5](16.0, 8.0, 4.0, 2.0, 1.0);
 const uint VOL_IN_WEIGHT_COUNT = 5u;
 const float VOL_IN_WEIGHT_SUM = 31.0;
-const uint VOL_IN_MOST_WALLS = 2u;
-const uint VOL_IN_END_SLOTS = 4u;
-const uint VOL_IN_BEFORE = 0u;
+const uint VOL_IN_PLACES_OF_ENDS = 4u;
+const uint VOL_IN_NODE_BEFORE = 0u;
+const uint VOL_IN_NODE_AFTER = 1u;
 const float VOL_IN_THIN = 0.125;
 const float VOL_IN_THICK = 0.5;
 const uvec2 VOL_IN_STRIDE = uvec2(3242174889u, 2447445414u);
 const uint VOL_IN_GOLDEN_STRIDE = 2654435769u;
+
+Vol_LastSearch vol_last_search[1] = Vol_LastSearch[1](Vol_LastSearch(false, vec3(0.0), Vol_Search(0.0, 0.0, 0u, false), 0.0));
 
 
 float vol_uniform_word(uint index) {
@@ -414,15 +439,15 @@ float vol_atan2_(float y, float x_7) {
 }
 
 float vol_acos(float x_8) {
-    float a_8 = min(abs(x_8), 1.0);
-    float p6_2 = (0.006671244 + (a_8 * -0.0012628166));
-    float p5_3 = (-0.017089743 + (a_8 * p6_2));
-    float p4_3 = (0.030893007 + (a_8 * p5_3));
-    float p3_3 = (-0.0501747 + (a_8 * p4_3));
-    float p2_3 = (0.08897905 + (a_8 * p3_3));
-    float p1_3 = (-0.2145988 + (a_8 * p2_3));
-    float p0_2 = (1.5707963 + (a_8 * p1_3));
-    float angle = (sqrt((1.0 - a_8)) * p0_2);
+    float a_7 = min(abs(x_8), 1.0);
+    float p6_2 = (0.006671244 + (a_7 * -0.0012628166));
+    float p5_3 = (-0.017089743 + (a_7 * p6_2));
+    float p4_3 = (0.030893007 + (a_7 * p5_3));
+    float p3_3 = (-0.0501747 + (a_7 * p4_3));
+    float p2_3 = (0.08897905 + (a_7 * p3_3));
+    float p1_3 = (-0.2145988 + (a_7 * p2_3));
+    float p0_2 = (1.5707963 + (a_7 * p1_3));
+    float angle = (sqrt((1.0 - a_7)) * p0_2);
     return ((x_8 < 0.0) ? (VOL_PI - angle) : angle);
 }
 
@@ -437,13 +462,13 @@ Vol_Cell vol_cell_of(vec3 p) {
     float _e8 = vol_hold(p.y, -4194303.0, VOL_FIELD);
     float _e12 = vol_hold(p.z, -4194303.0, VOL_FIELD);
     vec3 held = vec3(_e4, _e8, _e12);
-    vec3 whole_1 = floor(held);
-    vec3 place_6 = (held - whole_1);
-    float _e17 = vol_fade(place_6.x);
-    float _e19 = vol_fade(place_6.y);
-    float _e21 = vol_fade(place_6.z);
+    vec3 whole = floor(held);
+    vec3 place_8 = (held - whole);
+    float _e17 = vol_fade(place_8.x);
+    float _e19 = vol_fade(place_8.y);
+    float _e21 = vol_fade(place_8.z);
     vec3 weights_6 = vec3(_e17, _e19, _e21);
-    return Vol_Cell(ivec3(whole_1), place_6, weights_6);
+    return Vol_Cell(ivec3(whole), place_8, weights_6);
 }
 
 float vol_fade_slope(float t_1) {
@@ -491,8 +516,8 @@ uint vol_table_cell(int x_10, int y_2, int z_1) {
 }
 
 uint vol_mixed(uint joined) {
-    uint first_2 = ((joined ^ (joined >> 16u)) * 2146121005u);
-    return ((first_2 ^ (first_2 >> 15u)) * 2221713035u);
+    uint first_4 = ((joined ^ (joined >> 16u)) * 2146121005u);
+    return ((first_4 ^ (first_4 >> 15u)) * 2221713035u);
 }
 
 uint vol_spread(int x_11, int y_3, int z_2, uint seed) {
@@ -757,8 +782,8 @@ vec3 vol_offset_at(vec3 p_9, uint word_5, vec3 b1_1, vec3 b2_1, float t_6) {
     vec3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
     float back = (1.0 - t_6);
     vec3 _e9 = vol_end_from_point(p_9, word_5);
-    vec3 before_9 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
-    return ((t_6 > 0.5) ? before_9 : _e6);
+    vec3 before_10 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
+    return ((t_6 > 0.5) ? before_10 : _e6);
 }
 
 float vol_rough_cube_root(float x_14) {
@@ -910,13 +935,13 @@ Vol_CurvePoint vol_describe(vec3 p_13, uint word_12, float t_11) {
     bool starts = (_e59 && (_e62 == 0.0));
     bool _e66 = vol_at_last(word_12, t_11);
     float _e72 = vol_curve_word((word_12 + 38u));
-    bool ends_4 = ((_e66 || (_e23 == 0.0)) && (_e72 == 0.0));
+    bool ends_3 = ((_e66 || (_e23 == 0.0)) && (_e72 == 0.0));
     float behind_first = (starts ? -(ahead_2) : 0.0);
-    float beyond_last = (ends_4 ? ahead_2 : 0.0);
+    float beyond_last = (ends_3 ? ahead_2 : 0.0);
     vec3 _e81 = vol_cross(_e20, v_6);
     float _e82 = vol_dot(_e30, _e81);
     float bent_1 = (_e82 / vv);
-    float stretch_2 = (1.0 + (bent_1 / (2.0 * vv)));
+    float stretch = (1.0 + (bent_1 / (2.0 * vv)));
     float _e91 = vol_curve_word((word_12 + 31u));
     float _e92 = vol_length_to(word_12, t_11);
     float s_4 = (_e91 + (_e26 * _e92));
@@ -924,7 +949,7 @@ Vol_CurvePoint vol_describe(vec3 p_13, uint word_12, float t_11) {
     float _e102 = vol_hold((_e97 + (_e23 * t_11)), 0.0, 1.0);
     float _e104 = vol_hold(s_4, 0.0, _e29);
     float _e105 = vol_dot(_e30, _e30);
-    float _e112 = vol_hold(stretch_2, 0.0, VOL_STRETCH);
+    float _e112 = vol_hold(stretch, 0.0, VOL_STRETCH);
     return Vol_CurvePoint(_e102, _e104, _e29, x_26, y_12, sqrt(_e105), max(max(behind_first, beyond_last), 0.0), _e112);
 }
 
@@ -954,35 +979,68 @@ Vol_CurveSlopes vol_slopes(vec3 p_14, uint word_13, float t_12) {
     vec3 _e58 = vol_cross(_e14, v_7);
     float _e59 = vol_dot(_e19, _e58);
     float bent_2 = (_e59 / vv_1);
-    float stretch_3 = max((1.0 + (bent_2 / (2.0 * vv_1))), VOL_LEAST_STRETCH);
-    return Vol_CurveSlopes((_e19 * per_distance), tangent_2, min((abs(_e17) / (2.0 * speed_1)), VOL_LARGEST_RATE), ((held_1 || (_e17 == 0.0)) ? 0.0 : (1.0 / stretch_3)));
+    float stretch_1 = max((1.0 + (bent_2 / (2.0 * vv_1))), VOL_LEAST_STRETCH);
+    return Vol_CurveSlopes((_e19 * per_distance), tangent_2, min((abs(_e17) / (2.0 * speed_1)), VOL_LARGEST_RATE), ((held_1 || (_e17 == 0.0)) ? 0.0 : (1.0 / stretch_1)));
 }
 
-Vol_Search vol_search(vec3 p_15, Vol_Curve curve) {
+float vol_box_dist_sq(vec3 p_15, uint word_14) {
+    vec3 _e4 = vol_curve_vector((word_14 + 52u));
+    vec3 below = (_e4 - p_15);
+    vec3 _e8 = vol_curve_vector((word_14 + 55u));
+    vec3 above = (p_15 - _e8);
+    float x_27 = max(max(below.x, above.x), 0.0);
+    float y_13 = max(max(below.y, above.y), 0.0);
+    float z_10 = max(max(below.z, above.z), 0.0);
+    return (((x_27 * x_27) + (y_13 * y_13)) + (z_10 * z_10));
+}
+
+Vol_Search vol_search(vec3 p_16, Vol_Curve curve) {
+    float bound = 0.0;
     Vol_Search search = Vol_Search(3.4028235e38, 0.0, 0u, false);
     uint index_6 = 0u;
+    Vol_LastSearch last_5 = vol_last_search[curve.number];
+    if ((last_5.some && all(equal(last_5.point, p_16)))) {
+        return last_5.found;
+    }
+    vec3 way = (p_16 - last_5.point);
+    float _e15 = vol_dot(way, way);
+    float reach_1 = (last_5.reach + sqrt(_e15));
+    bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
-            uint _e21 = index_6;
-            index_6 = (_e21 + 1u);
+            uint _e53 = index_6;
+            index_6 = (_e53 + 1u);
         }
         loop_init_2 = false;
-        uint _e10 = index_6;
-        if ((_e10 < curve.count)) {
+        uint _e33 = index_6;
+        if ((_e33 < curve.count)) {
         } else {
             break;
         }
         {
-            Vol_Search _e13 = search;
-            uint _e15 = index_6;
-            uint _e19 = index_6;
-            Vol_Search _e20 = vol_visit(_e13, p_15, ((curve.first + _e15) * VOL_PIECE_WORDS), _e19);
-            search = _e20;
+            uint _e37 = index_6;
+            uint word_15 = ((curve.first + _e37) * VOL_PIECE_WORDS);
+            float _e41 = vol_box_dist_sq(p_16, word_15);
+            float _e42 = bound;
+            if ((_e41 <= _e42)) {
+                Vol_Search _e44 = search;
+                uint _e45 = index_6;
+                Vol_Search _e46 = vol_visit(_e44, p_16, word_15, _e45);
+                search = _e46;
+                float _e47 = bound;
+                float _e49 = search.dist_sq;
+                bound = min(_e47, (_e49 * VOL_LOOSE));
+            }
         }
     }
-    Vol_Search _e24 = search;
-    return _e24;
+    float _e62 = vol_curve_word(((curve.first * VOL_PIECE_WORDS) + 39u));
+    float slack = (VOL_SLACK * _e62);
+    Vol_Search _e68 = search;
+    float _e70 = search.dist_sq;
+    vol_last_search[curve.number] = Vol_LastSearch(true, p_16, _e68, (sqrt(_e70) + slack));
+    Vol_Search _e74 = search;
+    return _e74;
 }
 
 Vol_CurveSlopes vol_closest_gradient(vec3 point, Vol_Curve curve_1) {
@@ -1019,12 +1077,12 @@ float vol_f1_radius(float x0_1, float x1_1) {
 }
 
 float vol_f2_region_cloud(float x0_2, float x1_2, float x2_) {
-    Vol_CurvePoint _e16 = vol_closest(vec3(x0_2, x1_2, x2_), Vol_Curve(0u, 2u));
-    float v13_ = _e16.t;
-    float v14_ = _e16.arc_length;
-    float v15_ = _e16.curve_length;
-    float v16_ = _e16.distance_;
-    float v17_ = _e16.overshoot;
+    Vol_CurvePoint _e17 = vol_closest(vec3(x0_2, x1_2, x2_), Vol_Curve(0u, 2u, 0u));
+    float v13_ = _e17.t;
+    float v14_ = _e17.arc_length;
+    float v15_ = _e17.curve_length;
+    float v16_ = _e17.distance_;
+    float v17_ = _e17.overshoot;
     float v18_ = (v13_ * v13_);
     float v19_ = (v18_ * 0.52);
     float v20_ = (0.08 + v19_);
@@ -1050,23 +1108,23 @@ float vol_f2_region_cloud(float x0_2, float x1_2, float x2_) {
 }
 
 Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1) {
-    Vol_CurvePoint _e13 = vol_closest(vec3(x0_3, x1_3, x2_1), Vol_Curve(0u, 2u));
-    float v10_ = _e13.t;
-    float v11_ = _e13.arc_length;
-    float v12_ = _e13.x;
-    float v13_1 = _e13.y;
+    Vol_CurvePoint _e14 = vol_closest(vec3(x0_3, x1_3, x2_1), Vol_Curve(0u, 2u, 0u));
+    float v10_ = _e14.t;
+    float v11_ = _e14.arc_length;
+    float v12_ = _e14.x;
+    float v13_1 = _e14.y;
     float v14_1 = (v10_ * v10_);
     float v15_1 = (v14_1 * 0.52);
     float v16_1 = (0.08 + v15_1);
     float v18_1 = ((v16_1 > 1e-6) ? v16_1 : 1e-6);
     float v20_1 = (5.0265484 * v10_);
     float v22_1 = (v20_1 - 0.0);
-    float _e28 = vol_sin(v22_1);
-    float _e29 = vol_cos(v22_1);
-    float v25_1 = (_e29 * v12_);
-    float v26_ = (_e28 * v13_1);
-    float v27_1 = (_e28 * v12_);
-    float v28_1 = (_e29 * v13_1);
+    float _e29 = vol_sin(v22_1);
+    float _e30 = vol_cos(v22_1);
+    float v25_1 = (_e30 * v12_);
+    float v26_ = (_e29 * v13_1);
+    float v27_1 = (_e29 * v12_);
+    float v28_1 = (_e30 * v13_1);
     float v29_1 = (v25_1 - v26_);
     float v30_1 = (v27_1 + v28_1);
     float v31_1 = (v29_1 / v18_1);
@@ -1075,30 +1133,30 @@ Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1) {
     float v36_1 = (v11_ * 6.0);
     float v37_1 = (v32_1 * 3.0);
     float v38_1 = (v36_1 - 0.0);
-    float _e49 = vol_fbm(vec3(v35_1, v38_1, v37_1), 5.0, 2.0, 0.5, 0u);
-    float v44_ = (_e49 + 0.15);
+    float _e50 = vol_fbm(vec3(v35_1, v38_1, v37_1), 5.0, 2.0, 0.5, 0u);
+    float v44_ = (_e50 + 0.15);
     float v45_ = (25.0 * v44_);
     return Vol_Out10_(v45_, 0.7912979, 0.8307699, 1.0, 0.94129795, 0.9807699, 1.15, 0.0, 0.0, 0.0);
 }
 
 vec4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2) {
-    Vol_CurvePoint _e11 = vol_closest(vec3(x0_4, x1_4, x2_2), Vol_Curve(0u, 2u));
-    float v8_ = _e11.t;
-    float v9_ = _e11.arc_length;
-    float v10_1 = _e11.x;
-    float v11_1 = _e11.y;
+    Vol_CurvePoint _e12 = vol_closest(vec3(x0_4, x1_4, x2_2), Vol_Curve(0u, 2u, 0u));
+    float v8_ = _e12.t;
+    float v9_ = _e12.arc_length;
+    float v10_1 = _e12.x;
+    float v11_1 = _e12.y;
     float v12_1 = (v8_ * v8_);
     float v13_2 = (v12_1 * 0.52);
     float v14_2 = (0.08 + v13_2);
     float v16_2 = ((v14_2 > 1e-6) ? v14_2 : 1e-6);
     float v18_2 = (5.0265484 * v8_);
     float v20_2 = (v18_2 - 0.0);
-    float _e26 = vol_sin(v20_2);
-    float _e27 = vol_cos(v20_2);
-    float v23_1 = (_e27 * v10_1);
-    float v24_1 = (_e26 * v11_1);
-    float v25_2 = (_e26 * v10_1);
-    float v26_1 = (_e27 * v11_1);
+    float _e27 = vol_sin(v20_2);
+    float _e28 = vol_cos(v20_2);
+    float v23_1 = (_e28 * v10_1);
+    float v24_1 = (_e27 * v11_1);
+    float v25_2 = (_e27 * v10_1);
+    float v26_1 = (_e28 * v11_1);
     float v27_2 = (v23_1 - v24_1);
     float v28_2 = (v25_2 + v26_1);
     float v29_2 = (v27_2 / v16_2);
@@ -1107,8 +1165,8 @@ vec4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2) {
     float v34_1 = (v9_ * 6.0);
     float v35_2 = (v30_2 * 3.0);
     float v36_2 = (v34_1 - 0.0);
-    float _e47 = vol_fbm(vec3(v33_1, v36_2, v35_2), 5.0, 2.0, 0.5, 0u);
-    float v42_ = (_e47 + 0.15);
+    float _e48 = vol_fbm(vec3(v33_1, v36_2, v35_2), 5.0, 2.0, 0.5, 0u);
+    float v42_ = (_e48 + 0.15);
     float v43_ = (25.0 * v42_);
     return vec4(v43_, 0.94129795, 0.9807699, 1.15);
 }
@@ -1131,26 +1189,26 @@ float vol_f6_radius(float x0_6, float x1_6) {
 }
 
 float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3) {
-    Vol_CurvePoint _e18 = vol_closest(vec3(x0_7, x1_7, x2_3), Vol_Curve(0u, 2u));
-    float v15_2 = _e18.t;
-    float v16_3 = _e18.arc_length;
-    float v17_1 = _e18.curve_length;
-    float v18_3 = _e18.x;
-    float v19_1 = _e18.y;
-    float v20_3 = _e18.distance_;
-    float v21_ = _e18.overshoot;
+    Vol_CurvePoint _e19 = vol_closest(vec3(x0_7, x1_7, x2_3), Vol_Curve(0u, 2u, 0u));
+    float v15_2 = _e19.t;
+    float v16_3 = _e19.arc_length;
+    float v17_1 = _e19.curve_length;
+    float v18_3 = _e19.x;
+    float v19_1 = _e19.y;
+    float v20_3 = _e19.distance_;
+    float v21_ = _e19.overshoot;
     float v22_2 = (v15_2 * v15_2);
     float v23_2 = (v22_2 * 0.52);
     float v24_2 = (0.08 + v23_2);
     float v26_2 = ((v24_2 > 1e-6) ? v24_2 : 1e-6);
     float v28_3 = (5.0265484 * v15_2);
     float v30_3 = (v28_3 - 0.0);
-    float _e36 = vol_sin(v30_3);
-    float _e37 = vol_cos(v30_3);
-    float v33_2 = (_e37 * v18_3);
-    float v34_2 = (_e36 * v19_1);
-    float v35_3 = (_e36 * v18_3);
-    float v36_3 = (_e37 * v19_1);
+    float _e37 = vol_sin(v30_3);
+    float _e38 = vol_cos(v30_3);
+    float v33_2 = (_e38 * v18_3);
+    float v34_2 = (_e37 * v19_1);
+    float v35_3 = (_e37 * v18_3);
+    float v36_3 = (_e38 * v19_1);
     float v37_2 = (v33_2 - v34_2);
     float v38_2 = (v35_3 + v36_3);
     float v39_1 = (v37_2 / v26_2);
@@ -1159,8 +1217,8 @@ float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3) {
     float v44_1 = (v16_3 * 6.0);
     float v45_1 = (v40_1 * 3.0);
     float v46_ = (v44_1 - 0.0);
-    float _e57 = vol_fbm(vec3(v43_1, v46_, v45_1), 5.0, 2.0, 0.5, 0u);
-    float v52_ = (_e57 + 0.15);
+    float _e58 = vol_fbm(vec3(v43_1, v46_, v45_1), 5.0, 2.0, 0.5, 0u);
+    float v52_ = (_e58 + 0.15);
     float v53_ = (25.0 * v52_);
     float v54_ = (v20_3 - v26_2);
     float v55_ = (v20_3 - 0.6);
@@ -1190,23 +1248,23 @@ vec3 vol_f8_colour_cloud(float x0_8, float x1_8, float x2_4) {
 }
 
 vec3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5) {
-    Vol_CurvePoint _e9 = vol_closest(vec3(x0_9, x1_9, x2_5), Vol_Curve(0u, 2u));
-    float v6_1 = _e9.t;
-    float v7_ = _e9.arc_length;
-    float v8_2 = _e9.x;
-    float v9_1 = _e9.y;
+    Vol_CurvePoint _e10 = vol_closest(vec3(x0_9, x1_9, x2_5), Vol_Curve(0u, 2u, 0u));
+    float v6_1 = _e10.t;
+    float v7_ = _e10.arc_length;
+    float v8_2 = _e10.x;
+    float v9_1 = _e10.y;
     float v10_3 = (v6_1 * v6_1);
     float v11_2 = (v10_3 * 0.52);
     float v12_2 = (0.08 + v11_2);
     float v14_3 = ((v12_2 > 1e-6) ? v12_2 : 1e-6);
     float v16_4 = (5.0265484 * v6_1);
     float v18_4 = (v16_4 - 0.0);
-    float _e24 = vol_sin(v18_4);
-    float _e25 = vol_cos(v18_4);
-    float v21_1 = (_e25 * v8_2);
-    float v22_3 = (_e24 * v9_1);
-    float v23_3 = (_e24 * v8_2);
-    float v24_3 = (_e25 * v9_1);
+    float _e25 = vol_sin(v18_4);
+    float _e26 = vol_cos(v18_4);
+    float v21_1 = (_e26 * v8_2);
+    float v22_3 = (_e25 * v9_1);
+    float v23_3 = (_e25 * v8_2);
+    float v24_3 = (_e26 * v9_1);
     float v25_3 = (v21_1 - v22_3);
     float v26_3 = (v23_3 + v24_3);
     float v27_3 = (v25_3 / v14_3);
@@ -1214,13 +1272,13 @@ vec3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5) {
     return vec3(v27_3, v7_, v28_4);
 }
 
-float vol_in_object_distance(uint index_7, vec3 p_16) {
+float vol_in_object_distance(uint index_7, vec3 p_17) {
     do {
         return VOL_IN_FAR;
     } while(false);
 }
 
-vec3 vol_in_object_gradient(uint index_8, vec3 p_17) {
+vec3 vol_in_object_gradient(uint index_8, vec3 p_18) {
     do {
         return vec3(0.0);
     } while(false);
@@ -1232,16 +1290,16 @@ float vol_in_object_steepness(uint index_9, vec3 lo, vec3 hi) {
     } while(false);
 }
 
-Vol_in_Response vol_in_object_surface(uint index_10, vec3 p_18) {
+Vol_in_Response vol_in_object_surface(uint index_10, vec3 p_19) {
     do {
         return Vol_in_Response(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     } while(false);
 }
 
-float vol_in_medium_region(uint index_11, vec3 p_19) {
+float vol_in_medium_region(uint index_11, vec3 p_20) {
     switch(index_11) {
         case 0u: {
-            float _e5 = vol_f2_region_cloud(p_19.x, p_19.y, p_19.z);
+            float _e5 = vol_f2_region_cloud(p_20.x, p_20.y, p_20.z);
             return _e5;
         }
         default: {
@@ -1250,10 +1308,10 @@ float vol_in_medium_region(uint index_11, vec3 p_19) {
     }
 }
 
-Vol_in_Interior vol_in_medium_interior(uint index_12, vec3 p_20) {
+Vol_in_Interior vol_in_medium_interior(uint index_12, vec3 p_21) {
     switch(index_12) {
         case 0u: {
-            Vol_Out10_ _e5 = vol_f3_interior_cloud(p_20.x, p_20.y, p_20.z);
+            Vol_Out10_ _e5 = vol_f3_interior_cloud(p_21.x, p_21.y, p_21.z);
             return Vol_in_Interior(_e5.v0_, vec3(_e5.v1_, _e5.v2_, _e5.v3_), vec3(_e5.v4_, _e5.v5_, _e5.v6_), vec3(_e5.v7_, _e5.v8_, _e5.v9_));
         }
         default: {
@@ -1262,10 +1320,10 @@ Vol_in_Interior vol_in_medium_interior(uint index_12, vec3 p_20) {
     }
 }
 
-vec4 vol_in_medium_extinction(uint index_13, vec3 p_21) {
+vec4 vol_in_medium_extinction(uint index_13, vec3 p_22) {
     switch(index_13) {
         case 0u: {
-            vec4 _e5 = vol_f4_extinction_cloud(p_21.x, p_21.y, p_21.z);
+            vec4 _e5 = vol_f4_extinction_cloud(p_22.x, p_22.y, p_22.z);
             return _e5;
         }
         default: {
@@ -1486,18 +1544,18 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, vec3 lo_2, vec3 hi_2) {
             bool parallel = (abs(d) < VOL_IN_PARALLEL);
             float divisor = (parallel ? 1.0 : d);
             uint _e23 = axis_1;
-            float a_9 = ((lo_2[_e23] - o) / divisor);
+            float a_8 = ((lo_2[_e23] - o) / divisor);
             uint _e27 = axis_1;
-            float b_8 = ((hi_2[_e27] - o) / divisor);
+            float b_7 = ((hi_2[_e27] - o) / divisor);
             uint _e31 = axis_1;
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[_e31]) || (o > hi_2[_e34]));
-            float near_5 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_9, b_8));
-            float end_16 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_9, b_8));
+            float near_4 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
+            float end_18 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
             float _e50 = span_1.entry;
-            span_1.entry = max(_e50, near_5);
+            span_1.entry = max(_e50, near_4);
             float _e54 = span_1.leave;
-            span_1.leave = min(_e54, end_16);
+            span_1.leave = min(_e54, end_18);
         }
     }
     Vol_in_Span _e59 = span_1;
@@ -1560,8 +1618,8 @@ float vol_in_way_steepness(uint solid_3, Vol_in_Ray ray_3, float t_14, float ahe
     vec3 _e4 = vol_in_ray_at(ray_3, t_14);
     vec3 _e6 = vol_in_ray_at(ray_3, (t_14 + ahead));
     float _e8 = vol_in_remoteness();
-    float slack = (4.7683716e-7 * (_e8 + (t_14 + ahead)));
-    float _e18 = vol_in_object_steepness(solid_3, (min(_e4, _e6) - vec3(slack)), (max(_e4, _e6) + vec3(slack)));
+    float slack_1 = (4.7683716e-7 * (_e8 + (t_14 + ahead)));
+    float _e18 = vol_in_object_steepness(solid_3, (min(_e4, _e6) - vec3(slack_1)), (max(_e4, _e6) + vec3(slack_1)));
     return _e18;
 }
 
@@ -1687,8 +1745,8 @@ float vol_in_probe(Vol_in_Bracket bracket) {
     bool is_proper = ((bracket.outside.y >= 0.0) && (bracket.inside.y < 0.0));
     float fall = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
     float part_3 = (bracket.outside.y / fall);
-    float between_2 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
-    return (is_proper ? between_2 : bracket.inside.x);
+    float between_4 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
+    return (is_proper ? between_4 : bracket.inside.x);
 }
 
 Vol_in_Bracket vol_in_narrow(Vol_in_Bracket bracket_1, vec2 found) {
@@ -1769,10 +1827,10 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_8, float before_2, flo
             float _e17 = vol_in_probe(_e16);
             uint _e18 = round_1;
             uint _e22 = round_1;
-            float place_7 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
-            vec3 _e26 = vol_in_ray_at(ray_8, place_7);
+            float place_9 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            vec3 _e26 = vol_in_ray_at(ray_8, place_9);
             float _e27 = vol_in_object_distance(solid_8, _e26);
-            vec2 found_3 = vec2(place_7, (side_1 * _e27));
+            vec2 found_3 = vec2(place_9, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
                 bracket_2.outside = found_3;
@@ -1837,14 +1895,14 @@ Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9) {
             float _e33 = t_23;
             float _e34 = vol_in_stride(_e33);
             float _e35 = vol_in_advance(_e20, _e32, _e34);
-            float next_1 = (_e31 + _e35);
+            float next_2 = (_e31 + _e35);
             bool _e37 = hit;
-            if ((_e37 || (next_1 >= VOL_IN_FAR))) {
+            if ((_e37 || (next_2 >= VOL_IN_FAR))) {
                 break;
             }
             float _e41 = t_23;
             before_3 = _e41;
-            t_23 = next_1;
+            t_23 = next_2;
         }
     }
     bool _e45 = hit;
@@ -1904,10 +1962,10 @@ Vol_in_Ray vol_in_new_ray(vec3 origin, vec3 direction) {
 Vol_in_Ray vol_in_rim(Vol_in_Ray ray_10, float slope, vec2 end) {
     vec3 d_1 = ray_10.direction;
     float turn_1 = ((d_1.z < 0.0) ? -1.0 : 1.0);
-    float a_10 = (-1.0 / (turn_1 + d_1.z));
-    float b_9 = ((d_1.x * d_1.y) * a_10);
-    vec3 right = vec3((1.0 + (turn_1 * ((d_1.x * d_1.x) * a_10))), (turn_1 * b_9), -((turn_1 * d_1.x)));
-    vec3 up = vec3(b_9, (turn_1 + ((d_1.y * d_1.y) * a_10)), -(d_1.y));
+    float a_9 = (-1.0 / (turn_1 + d_1.z));
+    float b_8 = ((d_1.x * d_1.y) * a_9);
+    vec3 right = vec3((1.0 + (turn_1 * ((d_1.x * d_1.x) * a_9))), (turn_1 * b_8), -((turn_1 * d_1.x)));
+    vec3 up = vec3(b_8, (turn_1 + ((d_1.y * d_1.y) * a_9)), -(d_1.y));
     vec3 toward_3 = (d_1 + (((right * end.x) + (up * end.y)) * slope));
     float _e46 = vol_in_length3_(toward_3);
     Vol_in_Ray _e49 = vol_in_new_ray(ray_10.origin, (toward_3 / vec3(_e46)));
@@ -1974,10 +2032,10 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
             uint _e13 = solid_11;
             Vol_in_Span span_3 = spans_4[_e13];
             bool some_2 = (span_3.entry <= span_3.leave);
-            bool before_10 = (some_2 && (t_25 < span_3.entry));
+            bool before_11 = (some_2 && (t_25 < span_3.entry));
             float _e24 = near_2.gap;
             float _e26 = near_2.gap;
-            near_2.gap = (before_10 ? min(_e26, (span_3.entry - t_25)) : _e24);
+            near_2.gap = (before_11 ? min(_e26, (span_3.entry - t_25)) : _e24);
             if (((some_2 && (t_25 >= span_3.entry)) && (t_25 <= span_3.leave))) {
                 uint _e37 = solid_11;
                 vec3 _e38 = vol_in_ray_at(ray_12, t_25);
@@ -2000,8 +2058,8 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
 }
 
 bool vol_in_enters(float distance_1, float t_26, float least_1) {
-    float start_1 = ((8.0 * least_1) - t_26);
-    return (distance_1 < -(max(start_1, 0.0)));
+    float start_2 = ((8.0 * least_1) - t_26);
+    return (distance_1 < -(max(start_2, 0.0)));
 }
 
 float vol_in_least(vec2 a_6, vec2 b_6, vec2 c_3) {
@@ -2016,8 +2074,8 @@ float vol_in_least(vec2 a_6, vec2 b_6, vec2 c_3) {
     if ((bend <= 0.0)) {
         return b_6.y;
     }
-    float place_8 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_1 / bend)));
-    float value_6 = (a_6.y + ((place_8 - a_6.x) * (fall_1 + (bend * (place_8 - b_6.x)))));
+    float place_10 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_1 / bend)));
+    float value_6 = (a_6.y + ((place_10 - a_6.x) * (fall_1 + (bend * (place_10 - b_6.x)))));
     return min(max(value_6, (0.75 * b_6.y)), b_6.y);
 }
 
@@ -2045,7 +2103,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
     lowest_1 = _e6;
     Vol_in_Span _e8[1] = vol_in_cone_spans(ray_13, distance_2, slope_4);
     spans_5 = _e8;
-    float end_17 = min(distance_2, VOL_IN_FAR);
+    float end_19 = min(distance_2, VOL_IN_FAR);
     bool loop_init_13 = true;
     while(true) {
         if (!loop_init_13) {
@@ -2069,7 +2127,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             }
             float _e31 = t_28;
             float _e39 = t_28;
-            bool counts = (((_e31 > 0.0) && (_e26.distance_ >= 0.0)) && (_e26.distance_ < (end_17 - _e39)));
+            bool counts = (((_e31 > 0.0) && (_e26.distance_ >= 0.0)) && (_e26.distance_ < (end_19 - _e39)));
             float _e43 = t_28;
             float divisor_2 = (counts ? _e43 : 1.0);
             float sine_1 = min((_e26.distance_ / divisor_2), 1.0);
@@ -2089,7 +2147,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             float _e72 = vol_in_cone_step(_e26, least_step_1, slope_4, _e71);
             t_28 = (_e70 + _e72);
             float _e74 = t_28;
-            if ((_e74 >= end_17)) {
+            if ((_e74 >= end_19)) {
                 break;
             }
         }
@@ -2165,7 +2223,7 @@ float vol_in_lit_part(float centre, inout float clear_1[8]) {
     }
     float _e62 = sum_3;
     float part_4 = (_e62 / 19.0);
-    float whole_2 = max(((4.0 * centre) - 3.0), 0.0);
+    float whole_1 = max(((4.0 * centre) - 3.0), 0.0);
     widest = centre;
     bool loop_init_16 = true;
     while(true) {
@@ -2187,7 +2245,7 @@ float vol_in_lit_part(float centre, inout float clear_1[8]) {
         }
     }
     float _e90 = widest;
-    return ((part_4 + ((1.0 - part_4) * (whole_2 * whole_2))) * min((10.0 * _e90), 1.0));
+    return ((part_4 + ((1.0 - part_4) * (whole_1 * whole_1))) * min((10.0 * _e90), 1.0));
 }
 
 float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2, float slope_5) {
@@ -2210,11 +2268,11 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
         }
         {
             uint _e14 = index_16;
-            uint end_18 = (max(_e14, 1u) - 1u);
+            uint end_20 = (max(_e14, 1u) - 1u);
             toward = ray_14;
             uint _e20 = index_16;
             if ((_e20 > 0u)) {
-                vec2 _e24 = ends_1[end_18];
+                vec2 _e24 = ends_1[end_20];
                 Vol_in_Ray _e25 = vol_in_rim(ray_14, slope_5, _e24);
                 toward = _e25;
             }
@@ -2222,7 +2280,7 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
             float _e27 = vol_in_walk(_e26, distance_3, least_step_2, slope_5);
             uint _e28 = index_16;
             if ((_e28 > 0u)) {
-                clear_2[end_18] = _e27;
+                clear_2[end_20] = _e27;
             } else {
                 if ((_e27 >= 1.0)) {
                     return 1.0;
@@ -2272,7 +2330,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
     sides_5 = _e3;
     Vol_in_Span _e5[1] = vol_in_object_spans(ray_15, sides_5);
     spans_6 = _e5;
-    float end_19 = min(distance_4, VOL_IN_FAR);
+    float end_21 = min(distance_4, VOL_IN_FAR);
     bool loop_init_19 = true;
     while(true) {
         if (!loop_init_19) {
@@ -2300,7 +2358,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
             t_29 = (_e27 + _e29);
             bool _e31 = inside_1;
             float _e32 = t_29;
-            if ((_e31 || (_e32 >= end_19))) {
+            if ((_e31 || (_e32 >= end_21))) {
                 break;
             }
         }
@@ -2317,10 +2375,10 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
 Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words, bool spline) {
     float index_22 = min(floor(place_2), (last_2 - 1.0));
     float t_41 = (place_2 - index_22);
-    vec4 local_15 = vec4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
+    vec4 local_12 = vec4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
     float back_1 = (1.0 - t_41);
     vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_41 * t_41) * (1.0 - (0.5 * t_41)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_41 * (t_41 * t_41))));
-    vec4 weights_8 = (spline ? through : local_15);
+    vec4 weights_8 = (spline ? through : local_12);
     ivec4 around = (ivec4(int(index_22)) + ivec4(-1, 0, 1, 2));
     return Vol_in_Stencil((uvec4(min(max(around, ivec4(0)), ivec4(int(last_2)))) * words), weights_8);
 }
@@ -2398,10 +2456,10 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     float divisor_3 = ((ahead_4 && !(distant_1)) ? _e29 : 1.0);
     float _e41 = vol_in_length3_(off);
     vec3 seen_4 = vec3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
-    vec3 last_5 = (_e13 - vec3(1.0));
-    vec3 place_9 = ((seen_4 - _e7) * _e10);
-    bool beside_1 = ((((place_9.x < 0.0) || (place_9.x > last_5.x)) || (place_9.y < 0.0)) || (place_9.y > last_5.y));
-    if (((!(ahead_4) || beside_1) || (place_9.z <= 0.0))) {
+    vec3 last_6 = (_e13 - vec3(1.0));
+    vec3 place_11 = ((seen_4 - _e7) * _e10);
+    bool beside_1 = ((((place_11.x < 0.0) || (place_11.x > last_6.x)) || (place_11.y < 0.0)) || (place_11.y > last_6.y));
+    if (((!(ahead_4) || beside_1) || (place_11.z <= 0.0))) {
         return vec3(0.0);
     }
     float _e74 = vol_frame_word((grid + 25u));
@@ -2409,11 +2467,11 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     uint column = (channels_1 * uint(_e13.z));
     float _e81 = vol_frame_word((grid + 27u));
     bool spline_1 = (_e81 != 0.0);
-    Vol_in_Stencil _e89 = vol_in_stencil(place_9.x, last_5.x, (column * uint(_e13.y)), spline_1);
-    Vol_in_Stencil _e92 = vol_in_stencil(place_9.y, last_5.y, column, spline_1);
-    Vol_in_Stencil _e97 = vol_in_stencil(min(place_9.z, last_5.z), last_5.z, channels_1, spline_1);
+    Vol_in_Stencil _e89 = vol_in_stencil(place_11.x, last_6.x, (column * uint(_e13.y)), spline_1);
+    Vol_in_Stencil _e92 = vol_in_stencil(place_11.y, last_6.y, column, spline_1);
+    Vol_in_Stencil _e97 = vol_in_stencil(min(place_11.z, last_6.z), last_6.z, channels_1, spline_1);
     float _e100 = vol_frame_word((grid + 26u));
-    uint first_3 = uint(_e100);
+    uint first_5 = uint(_e100);
     vec3 _e104 = vol_in_word3_((grid + 22u));
     bool loop_init_22 = true;
     while(true) {
@@ -2430,7 +2488,7 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
         {
             uint _e112 = channel;
             uint _e114 = channel;
-            float _e116 = vol_in_grid_channel((first_3 + _e114), _e89, _e92, _e97, channels_1);
+            float _e116 = vol_in_grid_channel((first_5 + _e114), _e89, _e92, _e97, channels_1);
             depth[_e112] = _e116;
         }
     }
@@ -2447,100 +2505,160 @@ uint vol_in_medium_word(uint medium) {
     return (VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium));
 }
 
-ivec2 vol_in_node_range(Vol_in_Ray ray_17, uint medium_1, float step_size, float offset, float end_4) {
-    uint _e5 = vol_in_medium_word(medium_1);
-    vec3 reach_1 = vec3((1.01 * step_size));
-    vec3 _e11 = vol_in_word3_((_e5 + 1u));
-    vec3 _e15 = vol_in_word3_((_e5 + 4u));
-    Vol_in_Span _e17 = vol_in_slab(ray_17, (_e11 - reach_1), (_e15 + reach_1));
-    float leave_1 = min(_e17.leave, end_4);
-    float first_4 = min(max(floor(((_e17.entry / step_size) - offset)), 0.0), VOL_IN_LAST_NODE);
-    float last_6 = min(floor(((max(leave_1, 0.0) / step_size) - offset)), VOL_IN_LAST_NODE);
-    float _e37 = vol_frame_word(_e5);
-    bool none = ((_e17.entry > leave_1) || (_e37 == 0.0));
-    return (none ? ivec2(0, -1) : ivec2(int(first_4), int(last_6)));
+ivec2 vol_in_node_range(Vol_in_Ray ray_17, vec3 lo_3, vec3 hi_3, inout Vol_in_Comb comb) {
+    float step_size_4 = comb.step_;
+    vec3 reach_2 = vec3((1.01 * step_size_4));
+    Vol_in_Span _e11 = vol_in_slab(ray_17, (lo_3 - reach_2), (hi_3 + reach_2));
+    float _e14 = comb.end;
+    float leave_1 = min(_e11.leave, _e14);
+    float _e19 = comb.offset;
+    float first_6 = min(max(floor(((_e11.entry / step_size_4) - _e19)), 0.0), VOL_IN_LAST_NODE);
+    float _e30 = comb.offset;
+    float last_7 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
+    return ((_e11.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_6), int(last_7)));
 }
 
-ivec2 vol_in_range_union(ivec2 a_7, ivec2 b_7) {
-    ivec2 both = ivec2(min(a_7.x, b_7.x), max(a_7.y, b_7.y));
-    return ((a_7.x > a_7.y) ? b_7 : ((b_7.x > b_7.y) ? a_7 : both));
+Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, ivec2 range) {
+    bvec4 continued = bvec4(lessThanEqual(before_5.first, ivec4((range.y + 2))).x && greaterThanEqual(before_5.last, ivec4((range.x - 2))).x, lessThanEqual(before_5.first, ivec4((range.y + 2))).y && greaterThanEqual(before_5.last, ivec4((range.x - 2))).y, lessThanEqual(before_5.first, ivec4((range.y + 2))).z && greaterThanEqual(before_5.last, ivec4((range.x - 2))).z, lessThanEqual(before_5.first, ivec4((range.y + 2))).w && greaterThanEqual(before_5.last, ivec4((range.x - 2))).w);
+    ivec4 own_first = mix(ivec4(2147483647), before_5.first, continued);
+    ivec4 own_last = mix(ivec4(-1), before_5.last, continued);
+    int first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    int last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    ivec4 kept_first = mix(before_5.first, ivec4(2147483647), continued);
+    ivec4 kept_last = mix(before_5.last, ivec4(-1), continued);
+    bvec4 free_2 = equal(kept_first, ivec4(2147483647));
+    bvec4 place_12 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
+    return Vol_in_Runs(mix(kept_first, min(kept_first, ivec4(first_7)), place_12), mix(kept_last, max(kept_last, ivec4(last_8)), place_12));
 }
 
-Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_18, float end_5, float step_size_1) {
-    Vol_in_Comb comb = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    ivec2 whole = ivec2(0, -1);
-    uint medium_2 = 0u;
-    uint medium_3 = 0u;
-    comb.step_ = step_size_1;
-    comb.end = end_5;
-    float _e7 = vol_in_first_node(ray_18.shift);
-    comb.offset = _e7;
+Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1) {
+    Vol_in_Runs runs = Vol_in_Runs(ivec4(2147483647), ivec4(-1));
+    uint cell = 0u;
+    uint index_17 = 0u;
+    uint _e3 = vol_in_medium_word(medium_1);
+    vec3 _e12 = vol_in_word3_((_e3 + 1u));
+    vec3 _e15 = vol_in_word3_((_e3 + 4u));
+    ivec2 _e16 = vol_in_node_range(ray_18, _e12, _e15, comb_1);
+    float _e20 = vol_frame_word(_e3);
+    if (((_e16.x > _e16.y) || (_e20 == 0.0))) {
+        Vol_in_Runs _e24 = runs;
+        return _e24;
+    }
+    float _e27 = vol_frame_word((_e3 + 7u));
+    uint count_5 = uint(_e27);
+    if ((count_5 == 0u)) {
+        Vol_in_Runs _e31 = runs;
+        Vol_in_Runs _e32 = vol_in_add_run(_e31, _e16);
+        return _e32;
+    }
+    cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_1));
     bool loop_init_23 = true;
     while(true) {
         if (!loop_init_23) {
-            uint _e26 = medium_2;
-            medium_2 = (_e26 + 1u);
+            uint _e58 = index_17;
+            index_17 = (_e58 + 1u);
         }
         loop_init_23 = false;
-        uint _e15 = medium_2;
-        if ((_e15 < VOL_IN_MEDIUM_COUNT)) {
+        uint _e40 = index_17;
+        if ((_e40 < count_5)) {
         } else {
             break;
         }
         {
-            uint _e18 = medium_2;
-            ivec2 _e19 = vol_in_node_range(ray_18, _e18, step_size_1, _e7, end_5);
-            uint _e21 = medium_2;
-            comb.ranges[_e21] = _e19;
-            ivec2 _e23 = whole;
-            ivec2 _e24 = vol_in_range_union(_e23, _e19);
-            whole = _e24;
+            uint _e42 = cell;
+            vec3 _e43 = vol_in_word3_(_e42);
+            uint _e44 = cell;
+            vec3 _e47 = vol_in_word3_((_e44 + 3u));
+            ivec2 _e48 = vol_in_node_range(ray_18, _e43, _e47, comb_1);
+            if ((_e48.x <= _e48.y)) {
+                Vol_in_Runs _e52 = runs;
+                Vol_in_Runs _e53 = vol_in_add_run(_e52, _e48);
+                runs = _e53;
+            }
+            uint _e54 = cell;
+            cell = (_e54 + VOL_IN_CELL_WORDS);
         }
     }
-    int _e30 = whole.x;
-    comb.first = _e30;
-    int _e33 = whole.y;
-    int _e35 = whole.x;
-    comb.last = min(_e33, (_e35 + 16383));
-    bool loop_init_24 = true;
-    while(true) {
-        if (!loop_init_24) {
-            uint _e53 = medium_3;
-            medium_3 = (_e53 + 1u);
-        }
-        loop_init_24 = false;
-        uint _e41 = medium_3;
-        if ((_e41 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e45 = medium_3;
-            comb.before[_e45] = VOL_IN_FAR;
-            uint _e49 = medium_3;
-            comb.own[_e49] = VOL_IN_FAR;
-        }
+    Vol_in_Runs _e60 = runs;
+    return _e60;
+}
+
+ivec2 vol_in_run_from(Vol_in_Runs runs_1, int node) {
+    ivec4 first_8 = mix(ivec4(2147483647), max(runs_1.first, ivec4(node)), greaterThanEqual(runs_1.last, ivec4(node)));
+    int least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
+    ivec4 last_9 = mix(ivec4(node), runs_1.last, equal(first_8, ivec4(least_3)));
+    return ivec2(least_3, max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+}
+
+Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size) {
+    Vol_in_Comb comb_2 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    comb_2.step_ = step_size;
+    float _e7 = vol_in_first_node(ray_19.shift);
+    comb_2.offset = _e7;
+    comb_2.end = end_4;
+    comb_2.first = VOL_IN_NO_NODE;
+    comb_2.last = -1;
+    {
+        Vol_in_Runs _e14 = vol_in_find_runs(ray_19, 0u, comb_2);
+        comb_2.all_[0u] = _e14;
+        ivec2 _e20 = vol_in_run_from(_e14, 0);
+        comb_2.runs[0u] = _e20;
+        int _e23 = comb_2.first;
+        int _e27 = comb_2.runs[0u].x;
+        comb_2.first = min(_e23, _e27);
+        int _e31 = comb_2.last;
+        comb_2.last = max(_e31, max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w)));
+        comb_2.before[0u] = VOL_IN_FAR;
+        comb_2.own[0u] = VOL_IN_FAR;
     }
-    Vol_in_Comb _e55 = comb;
-    return _e55;
+    int _e52 = comb_2.last;
+    int _e54 = comb_2.first;
+    comb_2.last = min(_e52, (min(_e54, 2147467263) + 16383));
+    Vol_in_Comb _e60 = comb_2;
+    return _e60;
 }
 
-float vol_in_node_distance(int node, float step_size_2, float offset_1) {
-    return ((float(node) + offset_1) * step_size_2);
+int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead) {
+    int first_1 = VOL_IN_NO_NODE;
+    int after = (node_1 + 1);
+    {
+        int _e11 = comb_3.runs[0u].y;
+        if ((_e11 < after)) {
+            Vol_in_Runs _e17 = comb_3.all_[0u];
+            ivec2 _e18 = vol_in_run_from(_e17, after);
+            comb_3.runs[0u] = _e18;
+        }
+        int _e19 = first_1;
+        int _e23 = comb_3.runs[0u].x;
+        first_1 = min(_e19, _e23);
+    }
+    int _e25 = first_1;
+    int next_3 = max(after, (_e25 - lead));
+    {
+        float _e33 = comb_3.before[0u];
+        comb_3.before[0u] = ((next_3 > after) ? VOL_IN_FAR : _e33);
+        float _e41 = comb_3.own[0u];
+        comb_3.own[0u] = ((next_3 > after) ? VOL_IN_FAR : _e41);
+    }
+    return next_3;
 }
 
-float vol_in_panel_node(inout Vol_in_Comb comb_1, int node_1) {
-    float _e3 = comb_1.step_;
-    float _e5 = comb_1.offset;
-    float _e6 = vol_in_node_distance(node_1, _e3, _e5);
-    float _e10 = comb_1.end;
+float vol_in_node_distance(int node_2, float step_size_1, float offset) {
+    return ((float(node_2) + offset) * step_size_1);
+}
+
+float vol_in_panel_node(inout Vol_in_Comb comb_4, int node_3) {
+    float _e3 = comb_4.step_;
+    float _e5 = comb_4.offset;
+    float _e6 = vol_in_node_distance(node_3, _e3, _e5);
+    float _e10 = comb_4.end;
     return min(max(_e6, 0.0), _e10);
 }
 
 float vol_in_gap_probe(Vol_in_Gap gap, uint round_2) {
     float length_1 = (gap.stop.x - gap.start.x);
-    float least_3 = (VOL_IN_LEAST_SHARE * length_1);
-    float touching = ((gap.start.y + least_3) / ((gap.start.y + gap.stop.y) + (least_3 + least_3)));
+    float least_4 = (VOL_IN_LEAST_SHARE * length_1);
+    float touching = ((gap.start.y + least_4) / ((gap.start.y + gap.stop.y) + (least_4 + least_4)));
     return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching : 0.5)));
 }
 
@@ -2550,60 +2668,19 @@ float vol_in_crossing_probe(Vol_in_Crossing crossing) {
     return (inside_2.x + ((outside_1.x - inside_2.x) * (inside_2.y / (inside_2.y - outside_1.y))));
 }
 
-bool vol_in_near_cell(uint medium_4, vec3 point_5, float step_size_3) {
-    bool near_4 = false;
-    uint cell = 0u;
-    uint index_17 = 0u;
-    uint _e3 = vol_in_medium_word(medium_4);
-    float _e6 = vol_frame_word((_e3 + 8u));
-    uint count_5 = uint(_e6);
-    vec3 reach_2 = vec3((1.01 * step_size_3));
-    near_4 = (count_5 == 0u);
-    float _e16 = vol_frame_word((_e3 + 7u));
-    cell = uint(_e16);
-    bool loop_init_25 = true;
-    while(true) {
-        if (!loop_init_25) {
-            uint _e38 = index_17;
-            index_17 = (_e38 + 1u);
-        }
-        loop_init_25 = false;
-        uint _e21 = index_17;
-        if ((_e21 < count_5)) {
-        } else {
-            break;
-        }
-        {
-            uint _e23 = cell;
-            vec3 _e24 = vol_in_input3_(_e23);
-            vec3 lo_3 = (_e24 - reach_2);
-            uint _e26 = cell;
-            vec3 _e29 = vol_in_input3_((_e26 + 3u));
-            vec3 hi_3 = (_e29 + reach_2);
-            bool _e31 = near_4;
-            bool _e32 = vol_in_contains(lo_3, hi_3, point_5);
-            near_4 = (_e31 || _e32);
-            uint _e34 = cell;
-            cell = (_e34 + VOL_IN_CELL_WORDS);
-        }
-    }
-    bool _e40 = near_4;
-    return _e40;
-}
-
 float vol_in_gap_room(Vol_in_Gap gap_1) {
     return ((gap_1.stop.x - gap_1.start.x) - (gap_1.start.y + gap_1.stop.y));
 }
 
 Vol_in_Gap vol_in_gap_narrowed(Vol_in_Gap gap_2, vec2 found_1) {
-    Vol_in_Gap first_5 = Vol_in_Gap(gap_2.start, found_1);
+    Vol_in_Gap first_9 = Vol_in_Gap(gap_2.start, found_1);
     Vol_in_Gap second = Vol_in_Gap(found_1, gap_2.stop);
     float _e6 = vol_in_gap_room(second);
-    float _e7 = vol_in_gap_room(first_5);
+    float _e7 = vol_in_gap_room(first_9);
     if ((_e6 > _e7)) {
         return second;
     }
-    return first_5;
+    return first_9;
 }
 
 Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, vec2 found_2) {
@@ -2615,7 +2692,7 @@ Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, vec2 found_
     return Vol_in_Crossing(kept_1, found_2, 2u);
 }
 
-Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_19, uint medium_5, inout Vol_in_Comb comb_2, int node_2, vec2 t_30) {
+Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, vec2 t_30) {
     Vol_in_Between between = Vol_in_Between(4000000.0, vec2(0.0), 0u);
     Vol_in_Gap gap_3 = Vol_in_Gap(vec2(0.0), vec2(0.0));
     Vol_in_Crossing crossing_2 = Vol_in_Crossing(vec2(0.0), vec2(0.0), 0u);
@@ -2626,301 +2703,251 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_19, uint medium_5, inout Vol_in_
     float probe = 0.0;
     float value_3 = 0.0;
     bool local_4 = false;
-    bool local_5 = false;
-    float own_4 = comb_2.own[medium_5];
-    ivec2 range_1 = comb_2.ranges[medium_5];
-    bool known = (((range_1.x <= range_1.y) && ((node_2 + 1) >= range_1.x)) && (node_2 <= range_1.y));
+    float own_5 = comb_5.own[medium_2];
+    ivec2 run_1 = comb_5.runs[medium_2];
+    bool known = (((node_4 + 1) >= run_1.x) && (node_4 <= run_1.y));
     while(true) {
-        uint _e37 = aim;
-        if ((_e37 != VOL_IN_NO_MORE)) {
+        uint _e33 = aim;
+        if ((_e33 != VOL_IN_NO_MORE)) {
         } else {
             break;
         }
         {
             probe = t_30.y;
-            uint _e42 = aim;
-            if ((_e42 == VOL_IN_A_GAP)) {
-                Vol_in_Gap _e45 = gap_3;
-                uint _e46 = round_3;
-                float _e47 = vol_in_gap_probe(_e45, _e46);
-                probe = _e47;
+            uint _e38 = aim;
+            if ((_e38 == VOL_IN_A_GAP)) {
+                Vol_in_Gap _e41 = gap_3;
+                uint _e42 = round_3;
+                float _e43 = vol_in_gap_probe(_e41, _e42);
+                probe = _e43;
             } else {
-                uint _e48 = aim;
-                if ((_e48 == VOL_IN_A_WALL)) {
-                    Vol_in_Crossing _e51 = crossing_2;
-                    float _e52 = vol_in_crossing_probe(_e51);
-                    probe = _e52;
+                uint _e44 = aim;
+                if ((_e44 == VOL_IN_A_WALL)) {
+                    Vol_in_Crossing _e47 = crossing_2;
+                    float _e48 = vol_in_crossing_probe(_e47);
+                    probe = _e48;
                 }
             }
-            float _e53 = probe;
-            vec3 _e54 = vol_in_ray_at(ray_19, _e53);
+            float _e49 = probe;
+            vec3 _e50 = vol_in_ray_at(ray_20, _e49);
             value_3 = VOL_IN_FAR;
-            uint _e57 = aim;
-            if (!((_e57 != VOL_IN_THE_NODE))) {
-                if (known) {
-                    float _e66 = comb_2.step_;
-                    bool _e67 = vol_in_near_cell(medium_5, _e54, _e66);
-                    local_5 = _e67;
-                } else {
-                    local_5 = false;
-                }
-                bool _e69 = local_5;
-                local_4 = _e69;
+            uint _e53 = aim;
+            if (!((_e53 != VOL_IN_THE_NODE))) {
+                local_4 = known;
             } else {
                 local_4 = true;
             }
-            bool _e71 = local_4;
-            if (_e71) {
-                float _e72 = vol_in_medium_region(medium_5, _e54);
-                value_3 = _e72;
+            bool _e60 = local_4;
+            if (_e60) {
+                float _e61 = vol_in_medium_region(medium_2, _e50);
+                value_3 = _e61;
             }
-            float _e73 = probe;
-            float _e74 = value_3;
-            vec2 found_5 = vec2(_e73, _e74);
-            uint _e76 = round_3;
-            round_3 = (_e76 + 1u);
-            uint _e79 = aim;
-            if ((_e79 == VOL_IN_THE_NODE)) {
-                float _e83 = value_3;
-                between.next = _e83;
-                vec2 start_2 = vec2(t_30.x, own_4);
+            float _e62 = probe;
+            float _e63 = value_3;
+            vec2 found_5 = vec2(_e62, _e63);
+            uint _e65 = round_3;
+            round_3 = (_e65 + 1u);
+            uint _e68 = aim;
+            if ((_e68 == VOL_IN_THE_NODE)) {
+                float _e72 = value_3;
+                between.next = _e72;
+                vec2 start_3 = vec2(t_30.x, own_5);
                 round_3 = 0u;
                 aim = VOL_IN_NO_MORE;
-                int _e89 = comb_2.first;
-                if (((node_2 >= _e89) && (t_30.x < t_30.y))) {
-                    float _e97 = value_3;
-                    if (((own_4 < 0.0) != (_e97 < 0.0))) {
-                        crossing_2 = Vol_in_Crossing(((own_4 < 0.0) ? start_2 : found_5), ((own_4 < 0.0) ? found_5 : start_2), 0u);
+                int _e78 = comb_5.first;
+                if (((node_4 >= _e78) && (t_30.x < t_30.y))) {
+                    float _e86 = value_3;
+                    if (((own_5 < 0.0) != (_e86 < 0.0))) {
+                        crossing_2 = Vol_in_Crossing(((own_5 < 0.0) ? start_3 : found_5), ((own_5 < 0.0) ? found_5 : start_3), 0u);
                         wanted = 1u;
                         aim = VOL_IN_A_WALL;
                     } else {
-                        gap_3 = Vol_in_Gap(start_2, found_5);
-                        Vol_in_Gap _e114 = gap_3;
-                        float _e115 = vol_in_gap_room(_e114);
-                        bool may_enter = ((own_4 >= 0.0) && (_e115 > 0.0));
+                        gap_3 = Vol_in_Gap(start_3, found_5);
+                        Vol_in_Gap _e103 = gap_3;
+                        float _e104 = vol_in_gap_room(_e103);
+                        bool may_enter = ((own_5 >= 0.0) && (_e104 > 0.0));
                         aim = (may_enter ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
                     }
                 }
             } else {
-                uint _e122 = aim;
-                if ((_e122 == VOL_IN_A_GAP)) {
-                    float _e125 = value_3;
-                    if ((_e125 < 0.0)) {
-                        vec2 _e129 = gap_3.start;
-                        crossing_2 = Vol_in_Crossing(found_5, _e129, 0u);
-                        vec2 _e133 = gap_3.stop;
-                        other = Vol_in_Crossing(found_5, _e133, 0u);
+                uint _e111 = aim;
+                if ((_e111 == VOL_IN_A_GAP)) {
+                    float _e114 = value_3;
+                    if ((_e114 < 0.0)) {
+                        vec2 _e118 = gap_3.start;
+                        crossing_2 = Vol_in_Crossing(found_5, _e118, 0u);
+                        vec2 _e122 = gap_3.stop;
+                        other = Vol_in_Crossing(found_5, _e122, 0u);
                         wanted = 2u;
                         aim = VOL_IN_A_WALL;
                         round_3 = 0u;
                     } else {
-                        Vol_in_Gap _e139 = gap_3;
-                        Vol_in_Gap _e140 = vol_in_gap_narrowed(_e139, found_5);
-                        gap_3 = _e140;
-                        uint _e143 = round_3;
-                        Vol_in_Gap _e146 = gap_3;
-                        float _e147 = vol_in_gap_room(_e146);
-                        aim = (((_e143 < VOL_IN_CHORD_ROUNDS) && (_e147 > 0.0)) ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
+                        Vol_in_Gap _e128 = gap_3;
+                        Vol_in_Gap _e129 = vol_in_gap_narrowed(_e128, found_5);
+                        gap_3 = _e129;
+                        uint _e132 = round_3;
+                        Vol_in_Gap _e135 = gap_3;
+                        float _e136 = vol_in_gap_room(_e135);
+                        aim = (((_e132 < VOL_IN_CHORD_ROUNDS) && (_e136 > 0.0)) ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
                     }
                 } else {
-                    Vol_in_Crossing _e152 = crossing_2;
-                    Vol_in_Crossing _e153 = vol_in_crossing_narrowed(_e152, found_5);
-                    crossing_2 = _e153;
-                    uint _e154 = round_3;
-                    if ((_e154 == VOL_IN_WALL_ROUNDS)) {
-                        uint _e159 = between.count;
-                        Vol_in_Crossing _e161 = crossing_2;
-                        float _e162 = vol_in_crossing_probe(_e161);
-                        between.walls[_e159] = _e162;
-                        uint _e164 = between.count;
-                        between.count = (_e164 + 1u);
-                        Vol_in_Crossing _e167 = other;
-                        crossing_2 = _e167;
-                        uint _e171 = between.count;
-                        uint _e172 = wanted;
-                        aim = ((_e171 < _e172) ? VOL_IN_A_WALL : VOL_IN_NO_MORE);
+                    Vol_in_Crossing _e141 = crossing_2;
+                    Vol_in_Crossing _e142 = vol_in_crossing_narrowed(_e141, found_5);
+                    crossing_2 = _e142;
+                    uint _e143 = round_3;
+                    if ((_e143 == VOL_IN_WALL_ROUNDS)) {
+                        Vol_in_Crossing _e146 = crossing_2;
+                        float _e147 = vol_in_crossing_probe(_e146);
+                        float _e151 = between.walls.x;
+                        uint _e155 = between.count;
+                        between.walls = ((_e155 == 0u) ? vec2(_e147) : vec2(_e151, _e147));
+                        uint _e160 = between.count;
+                        between.count = (_e160 + 1u);
+                        Vol_in_Crossing _e163 = other;
+                        crossing_2 = _e163;
+                        uint _e167 = between.count;
+                        uint _e168 = wanted;
+                        aim = ((_e167 < _e168) ? VOL_IN_A_WALL : VOL_IN_NO_MORE);
                         round_3 = 0u;
                     }
                 }
             }
         }
     }
-    float _e179 = between.next;
-    comb_2.own[medium_5] = _e179;
-    Vol_in_Between _e180 = between;
-    return _e180;
+    float _e175 = between.next;
+    comb_5.own[medium_2] = _e175;
+    Vol_in_Between _e176 = between;
+    return _e176;
 }
 
-bool vol_in_wall_ends(float own, uint wall) {
-    return ((own < 0.0) || (wall == 1u));
+vec2 vol_in_panel_stretch(float own, vec2 t_31, Vol_in_Between between_1) {
+    return mix(between_1.walls, t_31, bvec2((own < 0.0), (between_1.next < 0.0)));
 }
 
-bool vol_in_has_panel(inout Vol_in_Comb comb_3, int node_3, vec2 t_31, float own_1, Vol_in_Between between_1) {
-    bool some_3 = (((own_1 < 0.0) || (between_1.next < 0.0)) || (between_1.count > 0u));
-    int _e16 = comb_3.first;
-    return (((node_3 >= _e16) && (t_31.x < t_31.y)) && some_3);
+uvec2 vol_in_new_ends(float own_1, Vol_in_Between between_2) {
+    bool has_walls = (between_2.count > 0u);
+    uint first_10 = (((own_1 >= 0.0) && has_walls) ? VOL_IN_START_END : VOL_IN_STOP_END);
+    return uvec2(first_10, (((between_2.next < 0.0) || has_walls) ? 2u : VOL_IN_STOP_END));
 }
 
-bvec2 vol_in_open_ends(inout Vol_in_Comb comb_4, int node_4, vec2 t_32, float own_2, float next) {
-    float _e9 = comb_4.step_;
-    float _e11 = comb_4.offset;
-    float _e12 = vol_in_node_distance((node_4 + 1), _e9, _e11);
-    bool is_last = (t_32.y < _e12);
-    return bvec2(((own_2 >= 0.0) || (node_4 == 0)), ((next >= 0.0) || is_last));
+bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, vec2 t_32, float own_2, Vol_in_Between between_3) {
+    bool some_3 = (((own_2 < 0.0) || (between_3.next < 0.0)) || (between_3.count > 0u));
+    int _e16 = comb_6.first;
+    return (((node_5 >= _e16) && (t_32.x < t_32.y)) && some_3);
 }
 
-vec2 vol_in_panel_masses(float step_size_4, float length_, vec2 ends_2, bvec2 open) {
+bvec2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, vec2 t_33, float own_3, float next) {
+    float _e9 = comb_7.step_;
+    float _e11 = comb_7.offset;
+    float _e12 = vol_in_node_distance((node_6 + 1), _e9, _e11);
+    bool is_last = (t_33.y < _e12);
+    return bvec2(((own_3 >= 0.0) || (node_6 == 0)), ((next >= 0.0) || is_last));
+}
+
+vec2 vol_in_panel_masses(float step_size_2, float length_, vec2 ends_2, bvec2 open) {
     float half_1 = (0.5 * length_);
-    float above = max(ends_2.x, ends_2.y);
-    float below = min(ends_2.x, ends_2.y);
-    bool changes = ((above > 0.0) && (below < 0.0));
+    float above_1 = max(ends_2.x, ends_2.y);
+    float below_1 = min(ends_2.x, ends_2.y);
+    bool changes = ((above_1 > 0.0) && (below_1 < 0.0));
     vec2 densities = max(ends_2, vec2(0.0));
     float rise_3 = (open.x ? (densities.y - densities.x) : (densities.x - densities.y));
-    float part_5 = (step_size_4 / max(length_, (0.25 * step_size_4)));
+    float part_5 = (step_size_2 / max(length_, (0.25 * step_size_2)));
     float most_1 = (0.5 * (half_1 * (densities.x + densities.y)));
-    float missed = max(min(((0.083333336 * step_size_4) * (part_5 * rise_3)), most_1), -(most_1));
+    float missed = max(min(((0.083333336 * step_size_2) * (part_5 * rise_3)), most_1), -(most_1));
     vec2 given = (open.x ? vec2(0.0, missed) : vec2(missed, 0.0));
     vec2 plain = max(((half_1 * densities) + ((open.x == open.y) ? vec2(0.0) : given)), vec2(0.0));
-    float fall_2 = (changes ? (above - below) : 1.0);
-    float mass = ((half_1 * (above * (above / fall_2))) + (length_ * (fall_2 * 0.083333336)));
+    float fall_2 = (changes ? (above_1 - below_1) : 1.0);
+    float mass = ((half_1 * (above_1 * (above_1 / fall_2))) + (length_ * (fall_2 * 0.083333336)));
     vec2 cut = ((ends_2.x > 0.0) ? vec2(mass, 0.0) : vec2(0.0, mass));
     return (changes ? cut : plain);
 }
 
-vec3 vol_in_panel_depth(Vol_in_Ray ray_20, inout Vol_in_Comb comb_5, int node_5, inout vec4 before_5[1]) {
+vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout vec4 before_6[1]) {
     vec3 depth_1 = vec3(0.0);
-    uint medium_6 = 0u;
-    vec4 first_1 = vec4(0.0);
+    vec4 first_2 = vec4(0.0);
     vec4 last_3 = vec4(0.0);
-    vec2 stretch = vec2(0.0);
-    uint kind = 0u;
-    vec4 matter = vec4(0.0);
-    bool local_6 = false;
-    float step_size_7 = comb_5.step_;
-    float _e6 = vol_in_panel_node(comb_5, node_5);
-    float _e9 = vol_in_panel_node(comb_5, (node_5 + 1));
+    uint end_5 = 0u;
+    float step_size_5 = comb_8.step_;
+    float _e6 = vol_in_panel_node(comb_8, node_7);
+    float _e9 = vol_in_panel_node(comb_8, (node_7 + 1));
     vec2 t_42 = vec2(_e6, _e9);
-    bool loop_init_26 = true;
-    while(true) {
-        if (!loop_init_26) {
-            uint _e104 = medium_6;
-            medium_6 = (_e104 + 1u);
-        }
-        loop_init_26 = false;
-        uint _e16 = medium_6;
-        if ((_e16 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e20 = medium_6;
-            float own_5 = comb_5.own[_e20];
-            uint _e23 = medium_6;
-            Vol_in_Between _e24 = vol_in_find_walls(ray_20, _e23, comb_5, node_5, t_42);
-            float next_2 = _e24.next;
-            uint _e26 = medium_6;
-            vec4 _e28 = before_5[_e26];
-            first_1 = _e28;
-            last_3 = vec4(0.0);
-            stretch = t_42;
-            kind = VOL_IN_AFTER;
-            bool loop_init_27 = true;
-            while(true) {
-                if (!loop_init_27) {
-                    uint _e77 = kind;
-                    kind = (_e77 + 1u);
-                }
-                loop_init_27 = false;
-                uint _e36 = kind;
-                if ((_e36 < (VOL_IN_WALL + _e24.count))) {
-                } else {
-                    break;
-                }
-                {
-                    uint _e41 = kind;
-                    bool is_wall = (_e41 >= VOL_IN_WALL);
-                    uint _e44 = kind;
-                    uint wall_1 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
-                    float distance_14 = (is_wall ? _e24.walls[wall_1] : t_42.y);
-                    matter = vec4(0.0);
-                    if (!(is_wall)) {
-                        local_6 = (next_2 < 0.0);
-                    } else {
-                        local_6 = true;
-                    }
-                    bool _e62 = local_6;
-                    if (_e62) {
-                        uint _e63 = medium_6;
-                        vec3 _e64 = vol_in_ray_at(ray_20, distance_14);
-                        vec4 _e65 = vol_in_medium_extinction(_e63, _e64);
-                        matter = _e65;
-                    }
-                    if (!(is_wall)) {
-                        uint _e67 = medium_6;
-                        vec4 _e69 = matter;
-                        before_5[_e67] = _e69;
-                        vec4 _e70 = matter;
-                        last_3 = _e70;
-                    } else {
-                        bool _e71 = vol_in_wall_ends(own_5, wall_1);
-                        if (_e71) {
-                            vec4 _e72 = matter;
-                            last_3 = _e72;
-                            stretch.y = distance_14;
-                        } else {
-                            vec4 _e74 = matter;
-                            first_1 = _e74;
-                            stretch.x = distance_14;
-                        }
-                    }
-                }
+    {
+        float own_6 = comb_8.own[0u];
+        Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_42);
+        vec2 _e19 = vol_in_panel_stretch(own_6, t_42, _e18);
+        vec4 _e21 = before_6[0u];
+        first_2 = _e21;
+        uvec2 _e26 = vol_in_new_ends(own_6, _e18);
+        end_5 = _e26.x;
+        bool loop_init_24 = true;
+        while(true) {
+            if (!loop_init_24) {
+                uint _e45 = end_5;
+                end_5 = (_e45 + 1u);
             }
-            bool _e79 = vol_in_has_panel(comb_5, node_5, t_42, own_5, _e24);
-            if (_e79) {
-                bvec2 _e80 = vol_in_open_ends(comb_5, node_5, t_42, own_5, next_2);
-                float _e82 = stretch.y;
-                float _e84 = stretch.x;
-                float _e87 = first_1.x;
-                float _e89 = last_3.x;
-                vec2 _e91 = vol_in_panel_masses(step_size_7, (_e82 - _e84), vec2(_e87, _e89), _e80);
-                vec3 _e92 = depth_1;
-                vec4 _e93 = first_1;
-                vec4 _e97 = last_3;
-                depth_1 = (_e92 + ((_e93.yzw * _e91.x) + (_e97.yzw * _e91.y)));
+            loop_init_24 = false;
+            uint _e29 = end_5;
+            if ((_e29 < _e26.y)) {
+            } else {
+                break;
             }
+            {
+                uint _e32 = end_5;
+                bool at_stop_1 = (_e32 == VOL_IN_STOP_END);
+                vec3 _e38 = vol_in_ray_at(ray_21, (at_stop_1 ? _e19.y : _e19.x));
+                vec4 _e39 = vol_in_medium_extinction(0u, _e38);
+                vec4 _e40 = first_2;
+                first_2 = (at_stop_1 ? _e40 : _e39);
+                vec4 _e42 = last_3;
+                last_3 = (at_stop_1 ? _e39 : _e42);
+            }
+        }
+        vec4 _e50 = last_3;
+        before_6[0u] = ((_e18.next < 0.0) ? _e50 : vec4(0.0));
+        bool _e55 = vol_in_has_panel(comb_8, node_7, t_42, own_6, _e18);
+        if (_e55) {
+            bvec2 _e57 = vol_in_open_ends(comb_8, node_7, t_42, own_6, _e18.next);
+            float _e62 = first_2.x;
+            float _e64 = last_3.x;
+            vec2 _e66 = vol_in_panel_masses(step_size_5, (_e19.y - _e19.x), vec2(_e62, _e64), _e57);
+            vec3 _e67 = depth_1;
+            vec4 _e68 = first_2;
+            vec4 _e72 = last_3;
+            depth_1 = (_e67 + ((_e68.yzw * _e66.x) + (_e72.yzw * _e66.y)));
         }
     }
-    vec3 _e106 = depth_1;
-    return _e106;
+    vec3 _e78 = depth_1;
+    return _e78;
 }
 
-vec3 vol_in_depth_by_panels(Vol_in_Ray ray_21, float end_6) {
-    Vol_in_Comb comb_6 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    vec4 before_6[1] = vec4[1](vec4(0.0));
+vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
+    Vol_in_Comb comb_9 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    vec4 before_7[1] = vec4[1](vec4(0.0));
     vec3 depth_2 = vec3(0.0);
-    int node_6 = 0;
+    int node_8 = 0;
     float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    Vol_in_Comb _e4 = vol_in_new_comb(ray_21, end_6, _e3);
-    comb_6 = _e4;
-    int _e11 = comb_6.first;
-    node_6 = (_e11 - 1);
-    bool loop_init_28 = true;
+    Vol_in_Comb _e4 = vol_in_new_comb(ray_22, end_6, _e3);
+    comb_9 = _e4;
+    int _e11 = comb_9.first;
+    node_8 = (_e11 - 1);
+    bool loop_init_25 = true;
     while(true) {
-        if (!loop_init_28) {
-            int _e28 = node_6;
-            node_6 = (_e28 + 1);
+        if (!loop_init_25) {
+            int _e27 = node_8;
+            int _e29 = vol_in_next_node(comb_9, _e27, 1);
+            node_8 = _e29;
         }
-        loop_init_28 = false;
-        int _e15 = node_6;
-        int _e17 = comb_6.last;
+        loop_init_25 = false;
+        int _e15 = node_8;
+        int _e17 = comb_9.last;
         if ((_e15 <= _e17)) {
         } else {
             break;
         }
         {
             vec3 _e19 = depth_2;
-            int _e20 = node_6;
-            vec3 _e21 = vol_in_panel_depth(ray_21, comb_6, _e20, before_6);
+            int _e20 = node_8;
+            vec3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_7);
             depth_2 = (_e19 + _e21);
             vec3 _e23 = depth_2;
             float _e24 = vol_in_smallest(_e23);
@@ -2933,137 +2960,97 @@ vec3 vol_in_depth_by_panels(Vol_in_Ray ray_21, float end_6) {
     return _e30;
 }
 
-float vol_in_wall(Vol_in_Ray ray_22, uint medium_7, ivec2 range, float t_33, int node_7, float step_size_5, float end_7) {
+float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, ivec2 run, float t_34, int node_9, float end_7) {
     float region = VOL_IN_FAR;
-    bool some_4 = (range.x <= range.y);
-    if (((some_4 && (node_7 >= (range.x - 1))) && (node_7 <= (range.y + 1)))) {
-        vec3 _e22 = vol_in_ray_at(ray_22, t_33);
-        bool _e23 = vol_in_near_cell(medium_7, _e22, step_size_5);
-        if (_e23) {
-            float _e24 = vol_in_medium_region(medium_7, _e22);
-            region = _e24;
-        }
+    if (((node_9 >= (run.x - 1)) && (node_9 <= (run.y + 1)))) {
+        vec3 _e17 = vol_in_ray_at(ray_23, t_34);
+        float _e18 = vol_in_medium_region(medium_3, _e17);
+        region = _e18;
     }
-    float _e25 = region;
-    return max(_e25, max((t_33 - end_7), -(t_33)));
+    float _e19 = region;
+    return max(_e19, max((t_34 - end_7), -(t_34)));
 }
 
-float vol_in_share(float own_3, float other_1, float step_size_6) {
-    float divisor_4 = ((own_3 < other_1) ? (own_3 - other_1) : -1.0);
-    float part_6 = (step_size_6 * (own_3 / divisor_4));
-    return ((other_1 < 0.0) ? (0.5 * step_size_6) : part_6);
+float vol_in_share(float own_4, float other_1, float step_size_3) {
+    float divisor_4 = ((own_4 < other_1) ? (own_4 - other_1) : -1.0);
+    float part_6 = (step_size_3 * (own_4 / divisor_4));
+    return ((other_1 < 0.0) ? (0.5 * step_size_3) : part_6);
 }
 
-bool vol_in_weigh(Vol_in_Ray ray_23, inout Vol_in_Comb comb_7, int node_8, inout float weights[1]) {
+bool vol_in_weigh(Vol_in_Ray ray_24, inout Vol_in_Comb comb_10, int node_10, inout float weights[1]) {
     bool any_inside = false;
-    uint medium_8 = 0u;
-    float step_size_8 = comb_7.step_;
-    float _e11 = comb_7.offset;
-    float _e12 = vol_in_node_distance((node_8 + 1), step_size_8, _e11);
-    bool loop_init_29 = true;
-    while(true) {
-        if (!loop_init_29) {
-            uint _e58 = medium_8;
-            medium_8 = (_e58 + 1u);
-        }
-        loop_init_29 = false;
-        uint _e15 = medium_8;
-        if ((_e15 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e19 = medium_8;
-            float before_11 = comb_7.before[_e19];
-            uint _e23 = medium_8;
-            float own_6 = comb_7.own[_e23];
-            uint _e26 = medium_8;
-            uint _e28 = medium_8;
-            ivec2 _e30 = comb_7.ranges[_e28];
-            float _e34 = comb_7.end;
-            float _e35 = vol_in_wall(ray_23, _e26, _e30, _e12, (node_8 + 1), step_size_8, _e34);
-            float _e36 = vol_in_share(own_6, before_11, step_size_8);
-            float _e37 = vol_in_share(own_6, _e35, step_size_8);
-            float weight = (_e36 + _e37);
-            int _e42 = comb_7.first;
-            bool is_inside = ((own_6 < 0.0) && (node_8 >= _e42));
-            uint _e45 = medium_8;
-            weights[_e45] = (is_inside ? weight : 0.0);
-            bool _e49 = any_inside;
-            any_inside = (_e49 || is_inside);
-            uint _e52 = medium_8;
-            comb_7.before[_e52] = own_6;
-            uint _e55 = medium_8;
-            comb_7.own[_e55] = _e35;
-        }
+    float step_size_6 = comb_10.step_;
+    float _e11 = comb_10.offset;
+    float _e12 = vol_in_node_distance((node_10 + 1), step_size_6, _e11);
+    {
+        float before_12 = comb_10.before[0u];
+        float own_7 = comb_10.own[0u];
+        ivec2 _e22 = comb_10.runs[0u];
+        float _e26 = comb_10.end;
+        float _e27 = vol_in_wall(ray_24, 0u, _e22, _e12, (node_10 + 1), _e26);
+        float _e28 = vol_in_share(own_7, before_12, step_size_6);
+        float _e29 = vol_in_share(own_7, _e27, step_size_6);
+        float weight = (_e28 + _e29);
+        int _e34 = comb_10.first;
+        bool is_inside = ((own_7 < 0.0) && (node_10 >= _e34));
+        weights[0u] = (is_inside ? weight : 0.0);
+        bool _e40 = any_inside;
+        any_inside = (_e40 || is_inside);
+        comb_10.before[0u] = own_7;
+        comb_10.own[0u] = _e27;
     }
-    bool _e60 = any_inside;
-    return _e60;
+    bool _e46 = any_inside;
+    return _e46;
 }
 
-vec3 vol_in_node_depth(vec3 point_6, inout float weights_1[1]) {
+vec3 vol_in_node_depth(vec3 point_5, inout float weights_1[1]) {
     vec3 depth_3 = vec3(0.0);
-    uint medium_9 = 0u;
-    bool loop_init_30 = true;
-    while(true) {
-        if (!loop_init_30) {
-            uint _e26 = medium_9;
-            medium_9 = (_e26 + 1u);
-        }
-        loop_init_30 = false;
-        uint _e7 = medium_9;
-        if ((_e7 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e10 = medium_9;
-            float weight_1 = weights_1[_e10];
-            if ((weight_1 > 0.0)) {
-                uint _e15 = medium_9;
-                vec4 _e16 = vol_in_medium_extinction(_e15, point_6);
-                vec3 _e17 = depth_3;
-                depth_3 = (_e17 + (_e16.yzw * (max(_e16.x, 0.0) * weight_1)));
-            }
+    {
+        float weight_1 = weights_1[0u];
+        if ((weight_1 > 0.0)) {
+            vec4 _e10 = vol_in_medium_extinction(0u, point_5);
+            vec3 _e11 = depth_3;
+            depth_3 = (_e11 + (_e10.yzw * (max(_e10.x, 0.0) * weight_1)));
         }
     }
-    vec3 _e28 = depth_3;
-    return _e28;
+    vec3 _e19 = depth_3;
+    return _e19;
 }
 
-vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_24, float end_8) {
-    Vol_in_Comb comb_8 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_25, float end_8) {
+    Vol_in_Comb comb_11 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     float weights_2[1] = float[1](0.0);
     vec3 depth_4 = vec3(0.0);
-    int node_9 = 0;
+    int node_11 = 0;
     float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    Vol_in_Comb _e4 = vol_in_new_comb(ray_24, end_8, _e3);
-    comb_8 = _e4;
-    int _e11 = comb_8.first;
-    node_9 = (_e11 - 2);
-    bool loop_init_31 = true;
+    Vol_in_Comb _e4 = vol_in_new_comb(ray_25, end_8, _e3);
+    comb_11 = _e4;
+    int _e11 = comb_11.first;
+    node_11 = (_e11 - 2);
+    bool loop_init_26 = true;
     while(true) {
-        if (!loop_init_31) {
-            int _e36 = node_9;
-            node_9 = (_e36 + 1);
+        if (!loop_init_26) {
+            int _e35 = node_11;
+            int _e37 = vol_in_next_node(comb_11, _e35, 2);
+            node_11 = _e37;
         }
-        loop_init_31 = false;
-        int _e15 = node_9;
-        int _e17 = comb_8.last;
+        loop_init_26 = false;
+        int _e15 = node_11;
+        int _e17 = comb_11.last;
         if ((_e15 <= _e17)) {
         } else {
             break;
         }
         {
-            int _e19 = node_9;
-            bool _e20 = vol_in_weigh(ray_24, comb_8, _e19, weights_2);
+            int _e19 = node_11;
+            bool _e20 = vol_in_weigh(ray_25, comb_11, _e19, weights_2);
             if (_e20) {
                 vec3 _e21 = depth_4;
-                int _e22 = node_9;
-                float _e24 = comb_8.step_;
-                float _e26 = comb_8.offset;
+                int _e22 = node_11;
+                float _e24 = comb_11.step_;
+                float _e26 = comb_11.offset;
                 float _e27 = vol_in_node_distance(_e22, _e24, _e26);
-                vec3 _e28 = vol_in_ray_at(ray_24, _e27);
+                vec3 _e28 = vol_in_ray_at(ray_25, _e27);
                 vec3 _e29 = vol_in_node_depth(_e28, weights_2);
                 depth_4 = (_e21 + _e29);
             }
@@ -3078,54 +3065,54 @@ vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_24, float end_8) {
     return _e38;
 }
 
-vec3 vol_in_optical_depth(Vol_in_Ray ray_25, float end_9) {
+vec3 vol_in_optical_depth(Vol_in_Ray ray_26, float end_9) {
     if (VOL_IN_CORRECTED) {
-        vec3 _e3 = vol_in_depth_by_panels(ray_25, end_9);
+        vec3 _e3 = vol_in_depth_by_panels(ray_26, end_9);
         return _e3;
     }
-    vec3 _e4 = vol_in_depth_by_nodes(ray_25, end_9);
+    vec3 _e4 = vol_in_depth_by_nodes(ray_26, end_9);
     return _e4;
 }
 
-vec3 vol_in_depth_towards(Vol_in_Ray ray_26, float distance_6, uint grid_1) {
+vec3 vol_in_depth_towards(Vol_in_Ray ray_27, float distance_6, uint grid_1) {
     if (VOL_IN_LIGHT_GRIDS) {
         if ((grid_1 != 0u)) {
-            vec3 _e7 = vol_in_grid_depth(grid_1, ray_26.origin);
+            vec3 _e7 = vol_in_grid_depth(grid_1, ray_27.origin);
             return _e7;
         }
     }
-    vec3 _e8 = vol_in_optical_depth(ray_26, distance_6);
+    vec3 _e8 = vol_in_optical_depth(ray_27, distance_6);
     return _e8;
 }
 
-vec3 vol_in_through_media(Vol_in_Ray ray_27, float distance_7, float part, uint grid_2) {
+vec3 vol_in_through_media(Vol_in_Ray ray_28, float distance_7, float part, uint grid_2) {
     if ((part <= 0.0)) {
         return vec3(0.0);
     }
-    vec3 _e8 = vol_in_depth_towards(ray_27, distance_7, grid_2);
+    vec3 _e8 = vol_in_depth_towards(ray_28, distance_7, grid_2);
     vec3 _e9 = vol_in_decay3_(_e8);
     float _e13 = vol_in_smallest(_e8);
     return ((_e13 > VOL_IN_OPAQUE) ? vec3(0.0) : (_e9 * part));
 }
 
-vec3 vol_in_soft_visibility(Vol_in_Ray ray_28, float distance_8, float bias_1, float slope_6, uint grid_3) {
+vec3 vol_in_soft_visibility(Vol_in_Ray ray_29, float distance_8, float bias_1, float slope_6, uint grid_3) {
     float part_1 = 0.0;
-    bool local_7 = false;
+    bool local_5 = false;
     if (VOL_IN_SOFT_LIGHTS) {
-        local_7 = (slope_6 > 0.0);
+        local_5 = (slope_6 > 0.0);
     } else {
-        local_7 = false;
+        local_5 = false;
     }
-    bool _e13 = local_7;
+    bool _e13 = local_5;
     if (_e13) {
-        float _e16 = vol_in_lit_part_of(ray_28, distance_8, (0.25 * bias_1), slope_6);
+        float _e16 = vol_in_lit_part_of(ray_29, distance_8, (0.25 * bias_1), slope_6);
         part_1 = _e16;
     } else {
-        float _e17 = vol_in_unblocked(ray_28, distance_8, bias_1);
+        float _e17 = vol_in_unblocked(ray_29, distance_8, bias_1);
         part_1 = _e17;
     }
     float _e18 = part_1;
-    vec3 _e19 = vol_in_through_media(ray_28, distance_8, _e18, grid_3);
+    vec3 _e19 = vol_in_through_media(ray_29, distance_8, _e18, grid_3);
     return _e19;
 }
 
@@ -3134,8 +3121,8 @@ vec3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact) {
         return vec3(1.0);
     }
     float _e7 = vol_in_shadow_bias(contact.t);
-    float offset_2 = max(_e7, (2.0 * contact.residual));
-    vec3 origin_2 = (contact.position + (contact.normal * offset_2));
+    float offset_1 = max(_e7, (2.0 * contact.residual));
+    vec3 origin_2 = (contact.position + (contact.normal * offset_1));
     Vol_in_Ray _e17 = vol_in_new_ray(origin_2, lamp.direction);
     vec3 _e21 = vol_in_soft_visibility(_e17, lamp.distance_, _e7, lamp.slope, lamp.grid);
     return _e21;
@@ -3144,15 +3131,15 @@ vec3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact) {
 float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float sides_6[1]) {
     float distance_9 = 0.0;
     uint solid_13 = 0u;
-    vec3 point_8 = (contact_1.position + (contact_1.normal * height));
+    vec3 point_7 = (contact_1.position + (contact_1.normal * height));
     distance_9 = height;
-    bool loop_init_32 = true;
+    bool loop_init_27 = true;
     while(true) {
-        if (!loop_init_32) {
+        if (!loop_init_27) {
             uint _e39 = solid_13;
             solid_13 = (_e39 + 1u);
         }
-        loop_init_32 = false;
+        loop_init_27 = false;
         uint _e10 = solid_13;
         if ((_e10 < VOL_IN_OBJECT_COUNT)) {
         } else {
@@ -3165,14 +3152,14 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
             vec3 lo_4 = (_e17 - vec3(height));
             vec3 _e22 = vol_in_word3_((_e14 + 4u));
             vec3 hi_4 = (_e22 + vec3(height));
-            bool _e25 = vol_in_contains(lo_4, hi_4, point_8);
+            bool _e25 = vol_in_contains(lo_4, hi_4, point_7);
             float _e26 = vol_frame_word(_e14);
             if ((_e25 && (_e26 != 0.0))) {
                 float _e30 = distance_9;
                 uint _e31 = solid_13;
                 float _e33 = sides_6[_e31];
                 uint _e34 = solid_13;
-                float _e35 = vol_in_object_distance(_e34, point_8);
+                float _e35 = vol_in_object_distance(_e34, point_7);
                 distance_9 = min(_e30, (_e33 * _e35));
             }
         }
@@ -3188,13 +3175,13 @@ float vol_in_openness(Vol_in_Contact contact_2, float reach) {
     uint index_18 = 0u;
     float _e4[1] = vol_in_find_sides();
     sides_7 = _e4;
-    bool loop_init_33 = true;
+    bool loop_init_28 = true;
     while(true) {
-        if (!loop_init_33) {
+        if (!loop_init_28) {
             uint _e36 = index_18;
             index_18 = (_e36 + 1u);
         }
-        loop_init_33 = false;
+        loop_init_28 = false;
         uint _e10 = index_18;
         if ((_e10 < VOL_IN_WEIGHT_COUNT)) {
         } else {
@@ -3223,7 +3210,7 @@ vec3 vol_in_answer(Vol_in_Response response, Vol_in_Contact contact_3, Vol_in_Ar
     return ((response.diffuse * cosine) + (response.specular * _e14));
 }
 
-vec3 vol_in_shade(Vol_in_Ray ray_29, Vol_in_Contact contact_4) {
+vec3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4) {
     vec3 color = vec3(0.0);
     uint light_1 = 0u;
     vec3 seen = vec3(0.0);
@@ -3237,13 +3224,13 @@ vec3 vol_in_shade(Vol_in_Ray ray_29, Vol_in_Contact contact_4) {
     color = _e15.emitted;
     uint _e30 = vol_in_light_count();
     uint count_6 = (answers ? _e30 : 0u);
-    bool loop_init_34 = true;
+    bool loop_init_29 = true;
     while(true) {
-        if (!loop_init_34) {
+        if (!loop_init_29) {
             uint _e69 = light_1;
             light_1 = (_e69 + 1u);
         }
-        loop_init_34 = false;
+        loop_init_29 = false;
         uint _e34 = light_1;
         if ((_e34 < count_6)) {
         } else {
@@ -3267,7 +3254,7 @@ vec3 vol_in_shade(Vol_in_Ray ray_29, Vol_in_Contact contact_4) {
                 }
                 vec3 _e60 = color;
                 vec3 _e62 = seen;
-                vec3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_29.direction);
+                vec3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_30.direction);
                 color = (_e60 + ((_e38.irradiance * _e62) * _e65));
             }
         }
@@ -3280,183 +3267,174 @@ Vol_in_Glow vol_in_clear_glow() {
     return Vol_in_Glow(vec3(0.0), vec3(1.0), vec3(0.0), vec3(1.0));
 }
 
-Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_30, float end_10) {
+Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_31, float end_10) {
     return Vol_in_StyledRays(0.0);
 }
 
-void vol_in_find_panels(Vol_in_Ray ray_31, inout Vol_in_Comb comb_9, int node_10, vec2 t_34, inout Vol_in_Panels panels) {
-    uint medium_10 = 0u;
+void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, vec2 t_35, inout Vol_in_Panels panels) {
+    Vol_in_PanelEnd start = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
+    Vol_in_PanelEnd stop = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
+    uint end_11 = 0u;
     vec2 masses = vec2(0.0);
-    uvec2 ends_3 = uvec2(0u);
-    vec2 stretch_1 = vec2(0.0);
-    uint kind_1 = 0u;
-    Vol_in_Interior interior = Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
-    bool local_8 = false;
     panels.depth = vec3(0.0);
     panels.some = false;
-    bool loop_init_35 = true;
-    while(true) {
-        if (!loop_init_35) {
-            uint _e165 = medium_10;
-            medium_10 = (_e165 + 1u);
+    {
+        float own_8 = comb_12.own[0u];
+        Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_35);
+        vec2 _e15 = vol_in_panel_stretch(own_8, t_35, _e14);
+        Vol_in_Interior nothing = Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
+        Vol_in_PanelEnd _e26 = panels.starts[0u];
+        start = _e26;
+        stop = Vol_in_PanelEnd(nothing, vec3(0.0), _e15.y, (_e14.next < 0.0));
+        uvec2 _e36 = vol_in_new_ends(own_8, _e14);
+        end_11 = _e36.x;
+        bool loop_init_30 = true;
+        while(true) {
+            if (!loop_init_30) {
+                uint _e60 = end_11;
+                end_11 = (_e60 + 1u);
+            }
+            loop_init_30 = false;
+            uint _e39 = end_11;
+            if ((_e39 < _e36.y)) {
+            } else {
+                break;
+            }
+            {
+                uint _e44 = end_11;
+                float distance_14 = ((_e44 == VOL_IN_STOP_END) ? _e15.y : _e15.x);
+                vec3 _e48 = vol_in_ray_at(ray_32, distance_14);
+                Vol_in_Interior _e49 = vol_in_medium_interior(0u, _e48);
+                uint _e50 = end_11;
+                if ((_e50 == VOL_IN_STOP_END)) {
+                    stop.interior = _e49;
+                    stop.source = _e49.emission;
+                } else {
+                    start = Vol_in_PanelEnd(_e49, _e49.emission, distance_14, false);
+                }
+            }
         }
-        loop_init_35 = false;
-        uint _e12 = medium_10;
-        if ((_e12 < VOL_IN_MEDIUM_COUNT)) {
+        bool _e65 = vol_in_has_panel(comb_12, node_12, t_35, own_8, _e14);
+        if (_e65) {
+            float _e68 = start.interior.density;
+            float _e71 = stop.interior.density;
+            vec2 densities_1 = vec2(_e68, _e71);
+            bvec2 _e74 = vol_in_open_ends(comb_12, node_12, t_35, own_8, _e14.next);
+            float _e76 = comb_12.step_;
+            vec2 _e80 = vol_in_panel_masses(_e76, (_e15.y - _e15.x), densities_1, _e74);
+            masses = _e80;
+            vec3 _e82 = panels.depth;
+            vec3 _e85 = start.interior.extinction;
+            float _e87 = masses.x;
+            vec3 _e91 = stop.interior.extinction;
+            float _e93 = masses.y;
+            panels.depth = (_e82 + ((_e85 * _e87) + (_e91 * _e93)));
+        }
+        Vol_in_PanelEnd _e99 = start;
+        panels.starts[0u] = _e99;
+        Vol_in_PanelEnd _e102 = stop;
+        panels.stops[0u] = _e102;
+        vec2 _e105 = masses;
+        panels.masses[0u] = _e105;
+        bool _e108 = panels.some;
+        vec2 _e109 = masses;
+        panels.some = (_e108 || any(greaterThan(_e109, vec2(0.0))));
+        return;
+    }
+}
+
+bool vol_in_is_end_at(Vol_in_PanelEnd end_12, uint medium_4, uint place_3) {
+    return (place_3 == (end_12.is_node ? (place_3 % 2u) : ((2u + (2u * medium_4)) + (place_3 % 2u))));
+}
+
+Vol_in_PanelEnd vol_in_panel_end(inout Vol_in_Panels panels_1, uint medium_5, bool at_stop) {
+    if (at_stop) {
+        Vol_in_PanelEnd _e5 = panels_1.stops[medium_5];
+        return _e5;
+    }
+    Vol_in_PanelEnd _e8 = panels_1.starts[medium_5];
+    return _e8;
+}
+
+uint vol_in_next_dark_place(inout Vol_in_Panels panels_2, uint first_3) {
+    uint next_1 = VOL_IN_PLACES_OF_ENDS;
+    uint place_4 = VOL_IN_PLACES_OF_ENDS;
+    bool dark = false;
+    while(true) {
+        uint _e6 = place_4;
+        if ((_e6 > 0u)) {
         } else {
             break;
         }
         {
-            uint _e16 = medium_10;
-            float own_7 = comb_9.own[_e16];
-            uint _e19 = medium_10;
-            Vol_in_Between _e20 = vol_in_find_walls(ray_31, _e19, comb_9, node_10, t_34);
-            float next_3 = _e20.next;
-            masses = vec2(0.0);
-            ends_3 = uvec2(0u, 1u);
-            stretch_1 = t_34;
-            uint _e31 = medium_10;
-            panels.walls[_e31] = _e20.walls;
-            kind_1 = VOL_IN_AFTER;
-            bool loop_init_36 = true;
-            while(true) {
-                if (!loop_init_36) {
-                    uint _e102 = kind_1;
-                    kind_1 = (_e102 + 1u);
-                }
-                loop_init_36 = false;
-                uint _e36 = kind_1;
-                if ((_e36 < (VOL_IN_WALL + _e20.count))) {
-                } else {
-                    break;
-                }
-                {
-                    uint _e41 = kind_1;
-                    bool is_wall_1 = (_e41 >= VOL_IN_WALL);
-                    uint _e44 = kind_1;
-                    uint wall_2 = (max(_e44, VOL_IN_WALL) - VOL_IN_WALL);
-                    float distance_15 = (is_wall_1 ? _e20.walls[wall_2] : t_34.y);
-                    interior = Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
-                    if (!(is_wall_1)) {
-                        local_8 = (next_3 < 0.0);
-                    } else {
-                        local_8 = true;
-                    }
-                    bool _e68 = local_8;
-                    if (_e68) {
-                        uint _e69 = medium_10;
-                        vec3 _e70 = vol_in_ray_at(ray_31, distance_15);
-                        Vol_in_Interior _e71 = vol_in_medium_interior(_e69, _e70);
-                        interior = _e71;
-                    }
-                    uint _e73 = kind_1;
-                    uint _e76 = medium_10;
-                    Vol_in_Interior _e79 = interior;
-                    panels.interiors[((_e73 * VOL_IN_MEDIUM_SLOTS) + _e76)] = _e79;
-                    bool _e80 = vol_in_wall_ends(own_7, wall_2);
-                    uvec2 _e81 = ends_3;
-                    uint _e82 = kind_1;
-                    uint _e84 = ends_3.y;
-                    uint _e87 = ends_3.x;
-                    uint _e88 = kind_1;
-                    ends_3 = (is_wall_1 ? (_e80 ? uvec2(_e87, _e88) : uvec2(_e82, _e84)) : _e81);
-                    vec2 _e92 = stretch_1;
-                    float _e94 = stretch_1.y;
-                    float _e97 = stretch_1.x;
-                    stretch_1 = (is_wall_1 ? (_e80 ? vec2(_e97, distance_15) : vec2(distance_15, _e94)) : _e92);
-                }
+            uint _e9 = place_4;
+            place_4 = (_e9 - 1u);
+            dark = false;
+            {
+                uint _e15 = place_4;
+                Vol_in_PanelEnd _e20 = vol_in_panel_end(panels_2, 0u, ((_e15 % 2u) == VOL_IN_STOP_END));
+                uint _e21 = place_4;
+                bool _e22 = vol_in_is_end_at(_e20, 0u, _e21);
+                bool _e23 = dark;
+                vec2 _e26 = panels_2.masses[0u];
+                dark = (_e23 || (_e22 && any(greaterThan(_e26, vec2(0.0)))));
             }
-            bool _e104 = vol_in_has_panel(comb_9, node_10, t_34, own_7, _e20);
-            if (_e104) {
-                uint _e107 = ends_3.x;
-                uint _e110 = medium_10;
-                Vol_in_Interior first_6 = panels.interiors[((_e107 * VOL_IN_MEDIUM_SLOTS) + _e110)];
-                uint _e116 = ends_3.y;
-                uint _e119 = medium_10;
-                Vol_in_Interior last_7 = panels.interiors[((_e116 * VOL_IN_MEDIUM_SLOTS) + _e119)];
-                bvec2 _e123 = vol_in_open_ends(comb_9, node_10, t_34, own_7, next_3);
-                float _e125 = comb_9.step_;
-                float _e127 = stretch_1.y;
-                float _e129 = stretch_1.x;
-                vec2 _e134 = vol_in_panel_masses(_e125, (_e127 - _e129), vec2(first_6.density, last_7.density), _e123);
-                masses = _e134;
-                vec3 _e136 = panels.depth;
-                float _e139 = masses.x;
-                float _e143 = masses.y;
-                panels.depth = (_e136 + ((first_6.extinction * _e139) + (last_7.extinction * _e143)));
-            }
-            uint _e148 = medium_10;
-            uvec2 _e150 = ends_3;
-            panels.ends[_e148] = _e150;
-            uint _e152 = medium_10;
-            vec2 _e154 = masses;
-            panels.masses[_e152] = _e154;
-            bool _e157 = panels.some;
-            vec2 _e158 = masses;
-            panels.some = (_e157 || any(greaterThan(_e158, vec2(0.0))));
+            uint _e33 = place_4;
+            bool _e37 = panels_2.lit;
+            bool lit = ((_e33 == VOL_IN_NODE_BEFORE) && _e37);
+            uint _e39 = next_1;
+            uint _e40 = place_4;
+            uint _e41 = place_4;
+            bool _e43 = dark;
+            next_1 = (((_e41 >= first_3) && (_e43 && !(lit))) ? _e40 : _e39);
         }
     }
-    return;
+    uint _e48 = next_1;
+    return _e48;
 }
 
-float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_32, float t_35) {
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_36) {
     return 1.0;
 }
 
-vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_33, float t_36, inout vec3 scatter[1]) {
+vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_37, inout vec3 scatter[1]) {
     bool asked = false;
-    uint medium_11 = 0u;
     float part_2 = 1.0;
-    bool local_9 = false;
-    bool loop_init_37 = true;
-    while(true) {
-        if (!loop_init_37) {
-            uint _e29 = medium_11;
-            medium_11 = (_e29 + 1u);
-        }
-        loop_init_37 = false;
-        uint _e10 = medium_11;
-        if ((_e10 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e13 = medium_11;
-            vec3 _e15 = scatter[_e13];
-            bool scatters = any(greaterThan(_e15, vec3(0.0)));
-            bool _e20 = asked;
-            uint _e21 = medium_11;
-            uint _e22 = vol_in_medium_word(_e21);
-            float _e23 = vol_frame_word(_e22);
-            asked = (_e20 || (scatters && (_e23 == VOL_IN_SHADOWED)));
-        }
+    bool local_6 = false;
+    {
+        vec3 _e10 = scatter[0u];
+        bool scatters = any(greaterThan(_e10, vec3(0.0)));
+        bool _e15 = asked;
+        uint _e16 = vol_in_medium_word(0u);
+        float _e17 = vol_frame_word(_e16);
+        asked = (_e15 || (scatters && (_e17 == VOL_IN_SHADOWED)));
     }
-    bool _e31 = asked;
-    if ((_e31 && lamp_3.shadows)) {
-        vec3 _e34 = vol_in_ray_at(ray_33, t_36);
-        Vol_in_Ray _e36 = vol_in_new_ray(_e34, lamp_3.direction);
+    bool _e22 = asked;
+    if ((_e22 && lamp_3.shadows)) {
+        vec3 _e25 = vol_in_ray_at(ray_34, t_37);
+        Vol_in_Ray _e27 = vol_in_new_ray(_e25, lamp_3.direction);
         if (VOL_IN_STYLES) {
-            local_9 = (lamp_3.style != 0u);
+            local_6 = (lamp_3.style != 0u);
         } else {
-            local_9 = false;
+            local_6 = false;
         }
-        bool _e46 = local_9;
-        if (_e46) {
-            float _e47 = vol_in_styled_share(lamp_3, light_3, styled, ray_33, t_36);
-            part_2 = _e47;
+        bool _e37 = local_6;
+        if (_e37) {
+            float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_37);
+            part_2 = _e38;
         } else {
-            float _e49 = vol_in_shadow_bias(t_36);
-            float _e50 = vol_in_unblocked(_e36, lamp_3.distance_, _e49);
-            part_2 = _e50;
+            float _e40 = vol_in_shadow_bias(t_37);
+            float _e41 = vol_in_unblocked(_e27, lamp_3.distance_, _e40);
+            part_2 = _e41;
         }
-        float _e52 = part_2;
-        vec3 _e54 = vol_in_through_media(_e36, lamp_3.distance_, _e52, lamp_3.grid);
-        return _e54;
+        float _e43 = part_2;
+        vec3 _e45 = vol_in_through_media(_e27, lamp_3.distance_, _e43, lamp_3.grid);
+        return _e45;
     }
     return vec3(1.0);
 }
 
-vec3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, vec3 point_7) {
+vec3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, vec3 point_6) {
     return vec3(1.0);
 }
 
@@ -3469,52 +3447,36 @@ vec2 vol_in_turn(vec3 toward_1, vec3 direction_2) {
 }
 
 void vol_in_scatter_light(Vol_in_Arriving lamp_5, vec3 seen_1, vec3 direction_3, inout vec3 scatter_1[1], inout vec3 source[1]) {
-    uint medium_12 = 0u;
     vec2 _e6 = vol_in_turn(lamp_5.direction, direction_3);
-    bool loop_init_38 = true;
-    while(true) {
-        if (!loop_init_38) {
-            uint _e43 = medium_12;
-            medium_12 = (_e43 + 1u);
-        }
-        loop_init_38 = false;
-        uint _e9 = medium_12;
-        if ((_e9 < VOL_IN_MEDIUM_COUNT)) {
+    {
+        uint _e8 = vol_in_medium_word(0u);
+        float _e9 = vol_frame_word(_e8);
+        vec3 part_7 = scatter_1[0u];
+        if ((any(greaterThan(part_7, vec3(0.0))) && (_e9 > VOL_IN_UNLIT))) {
+            float _e21 = vol_in_medium_phase(0u, _e6.x, _e6.y);
+            vec3 arrives = ((_e9 == VOL_IN_UNSHADOWED) ? vec3(1.0) : seen_1);
+            vec3 _e28 = source[0u];
+            source[0u] = (_e28 + ((part_7 * _e21) * (lamp_5.irradiance * arrives)));
+            return;
         } else {
-            break;
-        }
-        {
-            uint _e12 = medium_12;
-            uint _e13 = vol_in_medium_word(_e12);
-            float _e14 = vol_frame_word(_e13);
-            uint _e15 = medium_12;
-            vec3 part_7 = scatter_1[_e15];
-            if ((any(greaterThan(part_7, vec3(0.0))) && (_e14 > VOL_IN_UNLIT))) {
-                uint _e25 = medium_12;
-                float _e28 = vol_in_medium_phase(_e25, _e6.x, _e6.y);
-                vec3 arrives = ((_e14 == VOL_IN_UNSHADOWED) ? vec3(1.0) : seen_1);
-                uint _e34 = medium_12;
-                vec3 _e36 = source[_e34];
-                source[_e34] = (_e36 + ((part_7 * _e28) * (lamp_5.irradiance * arrives)));
-            }
+            return;
         }
     }
-    return;
 }
 
-void vol_in_light_place(Vol_in_Ray ray_34, float t_37, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
+void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
     uint light_5 = 0u;
     vec3 seen_2 = vec3(0.0);
-    bool local_10 = false;
-    vec3 _e5 = vol_in_ray_at(ray_34, t_37);
+    bool local_7 = false;
+    vec3 _e5 = vol_in_ray_at(ray_35, t_38);
     uint _e6 = vol_in_light_count();
-    bool loop_init_39 = true;
+    bool loop_init_31 = true;
     while(true) {
-        if (!loop_init_39) {
+        if (!loop_init_31) {
             uint _e31 = light_5;
             light_5 = (_e31 + 1u);
         }
-        loop_init_39 = false;
+        loop_init_31 = false;
         uint _e9 = light_5;
         if ((_e9 < _e6)) {
         } else {
@@ -3524,14 +3486,14 @@ void vol_in_light_place(Vol_in_Ray ray_34, float t_37, inout Vol_in_StyledRays s
             uint _e11 = light_5;
             Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
             uint _e13 = light_5;
-            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_34, t_37, scatter_2);
+            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_38, scatter_2);
             seen_2 = _e14;
             if (VOL_IN_STYLES) {
-                local_10 = (_e12.style != 0u);
+                local_7 = (_e12.style != 0u);
             } else {
-                local_10 = false;
+                local_7 = false;
             }
-            bool _e23 = local_10;
+            bool _e23 = local_7;
             if (_e23) {
                 vec3 _e24 = seen_2;
                 uint _e25 = light_5;
@@ -3539,134 +3501,74 @@ void vol_in_light_place(Vol_in_Ray ray_34, float t_37, inout Vol_in_StyledRays s
                 seen_2 = (_e24 * _e26);
             }
             vec3 _e28 = seen_2;
-            vol_in_scatter_light(_e12, _e28, ray_34.direction, scatter_2, source_1);
+            vol_in_scatter_light(_e12, _e28, ray_35.direction, scatter_2, source_1);
         }
     }
     return;
 }
 
-bool vol_in_light_ends(Vol_in_Ray ray_35, vec2 t_38, inout Vol_in_StyledRays styled_2, inout Vol_in_Panels panels_1) {
+bool vol_in_light_ends(Vol_in_Ray ray_36, inout Vol_in_StyledRays styled_2, inout Vol_in_Panels panels_3) {
     bool lit_after = false;
-    uint place_3 = 0u;
+    uint place_5 = 0u;
     float distance_10 = 0.0;
-    bool wanted_1 = false;
     vec3 scatter_3[1] = vec3[1](vec3(0.0));
     vec3 source_2[1] = vec3[1](vec3(0.0));
-    uint medium_13 = 0u;
-    uint medium_14 = 0u;
-    bool loop_init_40 = true;
+    uint _e6 = vol_in_next_dark_place(panels_3, 0u);
+    place_5 = _e6;
     while(true) {
-        if (!loop_init_40) {
-            uint _e140 = place_3;
-            place_3 = (_e140 + 1u);
-        }
-        loop_init_40 = false;
-        uint _e8 = place_3;
-        if ((_e8 < 4u)) {
+        uint _e8 = place_5;
+        if ((_e8 < VOL_IN_PLACES_OF_ENDS)) {
         } else {
             break;
         }
         {
-            uint _e11 = place_3;
-            bool is_wall_2 = (_e11 >= VOL_IN_WALL);
-            uint _e14 = place_3;
-            uint wall_3 = ((max(_e14, VOL_IN_WALL) - VOL_IN_WALL) % VOL_IN_MOST_WALLS);
-            uint _e21 = place_3;
-            uint owner = ((max(_e21, VOL_IN_WALL) - VOL_IN_WALL) / VOL_IN_MOST_WALLS);
-            uint _e28 = place_3;
-            uint kind_2 = (is_wall_2 ? (VOL_IN_WALL + wall_3) : _e28);
-            distance_10 = ((kind_2 == VOL_IN_BEFORE) ? t_38.x : t_38.y);
-            wanted_1 = false;
+            uint _e11 = place_5;
+            bool at_stop_2 = ((_e11 % 2u) == VOL_IN_STOP_END);
+            distance_10 = 0.0;
             scatter_3 = vec3[1](vec3(0.0));
             source_2 = vec3[1](vec3(0.0));
-            medium_13 = 0u;
-            bool loop_init_41 = true;
-            while(true) {
-                if (!loop_init_41) {
-                    uint _e103 = medium_13;
-                    medium_13 = (_e103 + 1u);
-                }
-                loop_init_41 = false;
-                uint _e46 = medium_13;
-                if ((_e46 < VOL_IN_MEDIUM_COUNT)) {
+            {
+                Vol_in_PanelEnd _e23 = vol_in_panel_end(panels_3, 0u, at_stop_2);
+                uint _e24 = place_5;
+                bool _e25 = vol_in_is_end_at(_e23, 0u, _e24);
+                scatter_3[0u] = (_e25 ? _e23.interior.scattering : vec3(0.0));
+                source_2[0u] = _e23.source;
+                float _e34 = distance_10;
+                distance_10 = (_e25 ? _e23.distance_ : _e34);
+            }
+            float _e37 = distance_10;
+            vol_in_light_place(ray_36, _e37, styled_2, scatter_3, source_2);
+            {
+                if (at_stop_2) {
+                    vec3 _e43 = source_2[0u];
+                    panels_3.stops[0u].source = _e43;
                 } else {
-                    break;
-                }
-                {
-                    uint _e50 = medium_13;
-                    uvec2 ends_5 = panels_1.ends[_e50];
-                    uint _e54 = medium_13;
-                    bool own_8 = (!(is_wall_2) || (_e54 == owner));
-                    uint _e62 = medium_13;
-                    vec2 _e64 = panels_1.masses[_e62];
-                    bool asks = ((own_8 && any(equal(ends_5, uvec2(kind_2)))) && any(greaterThan(_e64, vec2(0.0))));
-                    bool _e70 = wanted_1;
-                    wanted_1 = (_e70 || asks);
-                    uint _e72 = medium_13;
-                    scatter_3[_e72] = vec3(0.0);
-                    uint _e76 = medium_13;
-                    source_2[_e76] = vec3(0.0);
-                    if ((!(is_wall_2) || asks)) {
-                        uint _e85 = medium_13;
-                        Vol_in_Interior interior_1 = panels_1.interiors[((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e85)];
-                        uint _e89 = medium_13;
-                        scatter_3[_e89] = interior_1.scattering;
-                        uint _e92 = medium_13;
-                        source_2[_e92] = interior_1.emission;
-                        float _e95 = distance_10;
-                        uint _e97 = medium_13;
-                        float _e100 = panels_1.walls[_e97][wall_3];
-                        distance_10 = (is_wall_2 ? _e100 : _e95);
-                    }
+                    vec3 _e48 = source_2[0u];
+                    panels_3.starts[0u].source = _e48;
                 }
             }
-            bool _e105 = wanted_1;
-            bool _e109 = panels_1.lit;
-            if ((_e105 && !(((kind_2 == VOL_IN_BEFORE) && _e109)))) {
-                float _e113 = distance_10;
-                vol_in_light_place(ray_35, _e113, styled_2, scatter_3, source_2);
-                bool _e114 = lit_after;
-                lit_after = (_e114 || (kind_2 == VOL_IN_AFTER));
-                medium_14 = 0u;
-                bool loop_init_42 = true;
-                while(true) {
-                    if (!loop_init_42) {
-                        uint _e137 = medium_14;
-                        medium_14 = (_e137 + 1u);
-                    }
-                    loop_init_42 = false;
-                    uint _e120 = medium_14;
-                    if ((_e120 < VOL_IN_MEDIUM_COUNT)) {
-                    } else {
-                        break;
-                    }
-                    {
-                        uint _e124 = medium_14;
-                        if ((!(is_wall_2) || (_e124 == owner))) {
-                            uint _e130 = medium_14;
-                            uint _e133 = medium_14;
-                            vec3 _e135 = source_2[_e133];
-                            panels_1.sources[((kind_2 * VOL_IN_MEDIUM_SLOTS) + _e130)] = _e135;
-                        }
-                    }
-                }
-            }
+            bool _e49 = lit_after;
+            uint _e50 = place_5;
+            lit_after = (_e49 || (_e50 == VOL_IN_NODE_AFTER));
+            uint _e54 = place_5;
+            uint _e57 = vol_in_next_dark_place(panels_3, (_e54 + 1u));
+            place_5 = _e57;
         }
     }
-    bool _e142 = lit_after;
-    return _e142;
+    bool _e58 = lit_after;
+    return _e58;
 }
 
-Vol_in_Glow vol_in_gather(Vol_in_Glow before_7, int node_11, Vol_in_Chunk chunk) {
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_8, int node_13, Vol_in_Chunk chunk) {
     Vol_in_Glow glow = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    glow = before_7;
+    glow = before_8;
     vec3 _e5 = vol_in_decay3_(chunk.depth);
     vec3 _e7 = glow.light;
     vec3 _e9 = glow.transmittance;
     glow.light = (_e7 + (_e9 * chunk.sent));
     vec3 _e15 = glow.transmittance;
     glow.transmittance = (_e15 * _e5);
-    if (((node_11 % 2) == 0)) {
+    if (((node_13 % 2) == 0)) {
         vec3 twice = (chunk.sent * (vec3(1.0) + _e5));
         vec3 _e27 = glow.coarse_light;
         vec3 _e29 = glow.coarse_transmittance;
@@ -3678,248 +3580,178 @@ Vol_in_Glow vol_in_gather(Vol_in_Glow before_7, int node_11, Vol_in_Chunk chunk)
     return _e37;
 }
 
-vec3 vol_in_panel_sent(vec2 masses_1, vec3 start, vec3 end_11, vec3 depth_5) {
+vec3 vol_in_panel_sent(vec2 masses_1, vec3 start_1, vec3 end_13, vec3 depth_5) {
     vec3 _e4 = vol_in_mean_decay3_(depth_5);
-    vec3 steady = (start * _e4);
+    vec3 steady = (start_1 * _e4);
     vec3 _e7 = vol_in_decay_moment3_(depth_5);
-    vec3 change = ((end_11 - start) * _e7);
+    vec3 change = ((end_13 - start_1) * _e7);
     vec3 thick = ((steady + change) * (masses_1.x + masses_1.y));
     vec3 _e16 = vol_in_decay3_(depth_5);
-    vec3 thin = ((start * masses_1.x) + ((end_11 * _e16) * masses_1.y));
+    vec3 thin = ((start_1 * masses_1.x) + ((end_13 * _e16) * masses_1.y));
     vec3 rise_4 = min(max(((depth_5 - vec3(0.125)) * 2.6666667), vec3(0.0)), vec3(1.0));
     return (thin + ((thick - thin) * rise_4));
 }
 
-vec3 vol_in_panels_sent(inout Vol_in_Panels panels_2) {
+vec3 vol_in_panels_sent(inout Vol_in_Panels panels_4) {
     vec3 sent = vec3(0.0);
-    uint medium_15 = 0u;
-    vec3 depth_8 = panels_2.depth;
-    bool loop_init_43 = true;
-    while(true) {
-        if (!loop_init_43) {
-            uint _e43 = medium_15;
-            medium_15 = (_e43 + 1u);
-        }
-        loop_init_43 = false;
-        uint _e8 = medium_15;
-        if ((_e8 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e12 = medium_15;
-            vec2 masses_2 = panels_2.masses[_e12];
-            if (any(greaterThan(masses_2, vec2(0.0)))) {
-                uint _e20 = medium_15;
-                uvec2 ends_6 = panels_2.ends[_e20];
-                uint _e27 = medium_15;
-                vec3 start_3 = panels_2.sources[((ends_6.x * VOL_IN_MEDIUM_SLOTS) + _e27)];
-                uint _e35 = medium_15;
-                vec3 end_20 = panels_2.sources[((ends_6.y * VOL_IN_MEDIUM_SLOTS) + _e35)];
-                vec3 _e39 = sent;
-                vec3 _e40 = vol_in_panel_sent(masses_2, start_3, end_20, depth_8);
-                sent = (_e39 + _e40);
-            }
+    vec3 depth_8 = panels_4.depth;
+    {
+        vec2 masses_2 = panels_4.masses[0u];
+        if (any(greaterThan(masses_2, vec2(0.0)))) {
+            vec3 _e14 = sent;
+            vec3 _e18 = panels_4.starts[0u].source;
+            vec3 _e22 = panels_4.stops[0u].source;
+            vec3 _e23 = vol_in_panel_sent(masses_2, _e18, _e22, depth_8);
+            sent = (_e14 + _e23);
         }
     }
-    vec3 _e45 = sent;
-    return _e45;
+    vec3 _e25 = sent;
+    return _e25;
 }
 
-Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_36, float end_12) {
+Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
     Vol_in_Glow glow_1 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     Vol_in_StyledRays styled_3 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_10 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    Vol_in_Panels panels_3 = Vol_in_Panels(Vol_in_Interior[4](Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0))), vec3[4](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)), vec2[1](vec2(0.0)), uvec2[1](uvec2(0u)), vec2[1](vec2(0.0)), vec3(0.0), false, false);
-    int node_12 = 0;
+    Vol_in_Comb comb_13 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Panels panels_5 = Vol_in_Panels(Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), vec2[1](vec2(0.0)), vec3(0.0), false, false);
+    int node_14 = 0;
     bool lit_after_1 = false;
-    uint medium_16 = 0u;
     Vol_in_Glow _e2 = vol_in_clear_glow();
     glow_1 = _e2;
-    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_36, end_12);
+    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_37, end_14);
     styled_3 = _e4;
     float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    Vol_in_Comb _e8 = vol_in_new_comb(ray_36, end_12, _e7);
-    comb_10 = _e8;
-    panels_3.lit = false;
-    int _e14 = comb_10.first;
-    node_12 = (_e14 - 1);
-    bool loop_init_44 = true;
+    Vol_in_Comb _e8 = vol_in_new_comb(ray_37, end_14, _e7);
+    comb_13 = _e8;
+    int _e12 = comb_13.first;
+    node_14 = (_e12 - 1);
+    bool loop_init_32 = true;
     while(true) {
-        if (!loop_init_44) {
-            int _e76 = node_12;
-            node_12 = (_e76 + 1);
+        if (!loop_init_32) {
+            int _e54 = node_14;
+            int _e56 = vol_in_next_node(comb_13, _e54, 1);
+            node_14 = _e56;
         }
-        loop_init_44 = false;
-        int _e18 = node_12;
-        int _e20 = comb_10.last;
-        if ((_e18 <= _e20)) {
-        } else {
-            break;
-        }
-        {
-            int _e22 = node_12;
-            float _e23 = vol_in_panel_node(comb_10, _e22);
-            int _e24 = node_12;
-            float _e27 = vol_in_panel_node(comb_10, (_e24 + 1));
-            vec2 t_43 = vec2(_e23, _e27);
-            int _e29 = node_12;
-            vol_in_find_panels(ray_36, comb_10, _e29, t_43, panels_3);
-            lit_after_1 = false;
-            bool _e33 = panels_3.some;
-            if (_e33) {
-                bool _e34 = vol_in_light_ends(ray_36, t_43, styled_3, panels_3);
-                lit_after_1 = _e34;
-                Vol_in_Glow _e35 = glow_1;
-                int _e36 = node_12;
-                vec3 _e37 = vol_in_panels_sent(panels_3);
-                vec3 _e39 = panels_3.depth;
-                Vol_in_Glow _e41 = vol_in_gather(_e35, _e36, Vol_in_Chunk(_e37, _e39));
-                glow_1 = _e41;
-            }
-            vec3 _e43 = glow_1.transmittance;
-            float _e44 = vol_in_largest(_e43);
-            if ((_e44 < VOL_IN_STOP)) {
-                break;
-            }
-            bool _e48 = lit_after_1;
-            panels_3.lit = _e48;
-            medium_16 = 0u;
-            bool loop_init_45 = true;
-            while(true) {
-                if (!loop_init_45) {
-                    uint _e73 = medium_16;
-                    medium_16 = (_e73 + 1u);
-                }
-                loop_init_45 = false;
-                uint _e51 = medium_16;
-                if ((_e51 < VOL_IN_MEDIUM_COUNT)) {
-                } else {
-                    break;
-                }
-                {
-                    uint _e55 = medium_16;
-                    uint _e59 = medium_16;
-                    Vol_in_Interior _e62 = panels_3.interiors[(VOL_IN_MEDIUM_SLOTS + _e59)];
-                    panels_3.interiors[_e55] = _e62;
-                    uint _e64 = medium_16;
-                    uint _e68 = medium_16;
-                    vec3 _e71 = panels_3.sources[(VOL_IN_MEDIUM_SLOTS + _e68)];
-                    panels_3.sources[_e64] = _e71;
-                }
-            }
-        }
-    }
-    Vol_in_Glow _e78 = glow_1;
-    return _e78;
-}
-
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_37, float t_39, inout Vol_in_StyledRays styled_4, inout float weights_4[1]) {
-    vec3 depth_6 = vec3(0.0);
-    vec3 scatter_4[1] = vec3[1](vec3(0.0));
-    vec3 source_3[1] = vec3[1](vec3(0.0));
-    uint medium_17 = 0u;
-    vec3 sent_1 = vec3(0.0);
-    uint medium_18 = 0u;
-    vec3 _e4 = vol_in_ray_at(ray_37, t_39);
-    bool loop_init_46 = true;
-    while(true) {
-        if (!loop_init_46) {
-            uint _e47 = medium_17;
-            medium_17 = (_e47 + 1u);
-        }
-        loop_init_46 = false;
-        uint _e12 = medium_17;
-        if ((_e12 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            uint _e15 = medium_17;
-            float weight_2 = weights_4[_e15];
-            uint _e18 = medium_17;
-            scatter_4[_e18] = vec3(0.0);
-            uint _e22 = medium_17;
-            source_3[_e22] = vec3(0.0);
-            if ((weight_2 > 0.0)) {
-                uint _e28 = medium_17;
-                Vol_in_Interior _e29 = vol_in_medium_interior(_e28, _e4);
-                float mass_1 = (max(_e29.density, 0.0) * weight_2);
-                vec3 _e34 = depth_6;
-                depth_6 = (_e34 + (_e29.extinction * mass_1));
-                uint _e38 = medium_17;
-                scatter_4[_e38] = (_e29.scattering * mass_1);
-                uint _e42 = medium_17;
-                source_3[_e42] = (_e29.emission * mass_1);
-            }
-        }
-    }
-    vol_in_light_place(ray_37, t_39, styled_4, scatter_4, source_3);
-    bool loop_init_47 = true;
-    while(true) {
-        if (!loop_init_47) {
-            uint _e66 = medium_18;
-            medium_18 = (_e66 + 1u);
-        }
-        loop_init_47 = false;
-        uint _e54 = medium_18;
-        if ((_e54 < VOL_IN_MEDIUM_COUNT)) {
-        } else {
-            break;
-        }
-        {
-            vec3 _e57 = sent_1;
-            uint _e58 = medium_18;
-            vec3 _e60 = source_3[_e58];
-            vec3 _e61 = depth_6;
-            vec3 _e62 = vol_in_mean_decay3_(_e61);
-            sent_1 = (_e57 + (_e60 * _e62));
-        }
-    }
-    vec3 _e68 = sent_1;
-    vec3 _e69 = depth_6;
-    return Vol_in_Chunk(_e68, _e69);
-}
-
-Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_38, float end_13) {
-    Vol_in_Glow glow_2 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    Vol_in_StyledRays styled_5 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_11 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    float weights_5[1] = float[1](0.0);
-    int node_13 = 0;
-    Vol_in_Glow _e2 = vol_in_clear_glow();
-    glow_2 = _e2;
-    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_38, end_13);
-    styled_5 = _e4;
-    float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    Vol_in_Comb _e8 = vol_in_new_comb(ray_38, end_13, _e7);
-    comb_11 = _e8;
-    int _e12 = comb_11.first;
-    node_13 = (_e12 - 2);
-    bool loop_init_48 = true;
-    while(true) {
-        if (!loop_init_48) {
-            int _e38 = node_13;
-            node_13 = (_e38 + 1);
-        }
-        loop_init_48 = false;
-        int _e16 = node_13;
-        int _e18 = comb_11.last;
+        loop_init_32 = false;
+        int _e16 = node_14;
+        int _e18 = comb_13.last;
         if ((_e16 <= _e18)) {
         } else {
             break;
         }
         {
-            int _e20 = node_13;
-            bool _e21 = vol_in_weigh(ray_38, comb_11, _e20, weights_5);
+            int _e20 = node_14;
+            float _e21 = vol_in_panel_node(comb_13, _e20);
+            int _e22 = node_14;
+            float _e25 = vol_in_panel_node(comb_13, (_e22 + 1));
+            vec2 t_43 = vec2(_e21, _e25);
+            int _e27 = node_14;
+            vol_in_find_panels(ray_37, comb_13, _e27, t_43, panels_5);
+            lit_after_1 = false;
+            bool _e31 = panels_5.some;
+            if (_e31) {
+                if (VOL_IN_LIT_MEDIA) {
+                    bool _e33 = vol_in_light_ends(ray_37, styled_3, panels_5);
+                    lit_after_1 = _e33;
+                }
+                Vol_in_Glow _e34 = glow_1;
+                int _e35 = node_14;
+                vec3 _e36 = vol_in_panels_sent(panels_5);
+                vec3 _e38 = panels_5.depth;
+                Vol_in_Glow _e40 = vol_in_gather(_e34, _e35, Vol_in_Chunk(_e36, _e38));
+                glow_1 = _e40;
+            }
+            vec3 _e42 = glow_1.transmittance;
+            float _e43 = vol_in_largest(_e42);
+            if ((_e43 < VOL_IN_STOP)) {
+                break;
+            }
+            bool _e47 = lit_after_1;
+            panels_5.lit = _e47;
+            {
+                Vol_in_PanelEnd _e53 = panels_5.stops[0u];
+                panels_5.starts[0u] = _e53;
+            }
+        }
+    }
+    Vol_in_Glow _e57 = glow_1;
+    return _e57;
+}
+
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_StyledRays styled_4, inout float weights_4[1]) {
+    vec3 depth_6 = vec3(0.0);
+    vec3 scatter_4[1] = vec3[1](vec3(0.0));
+    vec3 source_3[1] = vec3[1](vec3(0.0));
+    vec3 sent_1 = vec3(0.0);
+    vec3 _e4 = vol_in_ray_at(ray_38, t_39);
+    {
+        float weight_2 = weights_4[0u];
+        scatter_4[0u] = vec3(0.0);
+        source_3[0u] = vec3(0.0);
+        if ((weight_2 > 0.0)) {
+            Vol_in_Interior _e21 = vol_in_medium_interior(0u, _e4);
+            float mass_1 = (max(_e21.density, 0.0) * weight_2);
+            vec3 _e26 = depth_6;
+            depth_6 = (_e26 + (_e21.extinction * mass_1));
+            scatter_4[0u] = (_e21.scattering * mass_1);
+            source_3[0u] = (_e21.emission * mass_1);
+        }
+    }
+    if (VOL_IN_LIT_MEDIA) {
+        vol_in_light_place(ray_38, t_39, styled_4, scatter_4, source_3);
+    }
+    {
+        vec3 _e41 = sent_1;
+        vec3 _e43 = source_3[0u];
+        vec3 _e44 = depth_6;
+        vec3 _e45 = vol_in_mean_decay3_(_e44);
+        sent_1 = (_e41 + (_e43 * _e45));
+    }
+    vec3 _e48 = sent_1;
+    vec3 _e49 = depth_6;
+    return Vol_in_Chunk(_e48, _e49);
+}
+
+Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_39, float end_15) {
+    Vol_in_Glow glow_2 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    Vol_in_StyledRays styled_5 = Vol_in_StyledRays(0.0);
+    Vol_in_Comb comb_14 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    float weights_5[1] = float[1](0.0);
+    int node_15 = 0;
+    Vol_in_Glow _e2 = vol_in_clear_glow();
+    glow_2 = _e2;
+    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_39, end_15);
+    styled_5 = _e4;
+    float _e7 = vol_frame_word(VOL_IN_AT_STEP);
+    Vol_in_Comb _e8 = vol_in_new_comb(ray_39, end_15, _e7);
+    comb_14 = _e8;
+    int _e12 = comb_14.first;
+    node_15 = (_e12 - 2);
+    bool loop_init_33 = true;
+    while(true) {
+        if (!loop_init_33) {
+            int _e37 = node_15;
+            int _e39 = vol_in_next_node(comb_14, _e37, 2);
+            node_15 = _e39;
+        }
+        loop_init_33 = false;
+        int _e16 = node_15;
+        int _e18 = comb_14.last;
+        if ((_e16 <= _e18)) {
+        } else {
+            break;
+        }
+        {
+            int _e20 = node_15;
+            bool _e21 = vol_in_weigh(ray_39, comb_14, _e20, weights_5);
             if (_e21) {
                 Vol_in_Glow _e22 = glow_2;
-                int _e23 = node_13;
-                int _e24 = node_13;
-                float _e26 = comb_11.step_;
-                float _e28 = comb_11.offset;
+                int _e23 = node_15;
+                int _e24 = node_15;
+                float _e26 = comb_14.step_;
+                float _e28 = comb_14.offset;
                 float _e29 = vol_in_node_distance(_e24, _e26, _e28);
-                Vol_in_Chunk _e30 = vol_in_node_chunk(ray_38, _e29, styled_5, weights_5);
+                Vol_in_Chunk _e30 = vol_in_node_chunk(ray_39, _e29, styled_5, weights_5);
                 Vol_in_Glow _e31 = vol_in_gather(_e22, _e23, _e30);
                 glow_2 = _e31;
             }
@@ -3934,32 +3766,32 @@ Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_38, float end_13) {
     return _e40;
 }
 
-Vol_in_Glow vol_in_march(Vol_in_Ray ray_39, float end_14) {
+Vol_in_Glow vol_in_march(Vol_in_Ray ray_40, float end_16) {
     if (VOL_IN_CORRECTED) {
-        Vol_in_Glow _e3 = vol_in_march_panels(ray_39, end_14);
+        Vol_in_Glow _e3 = vol_in_march_panels(ray_40, end_16);
         return _e3;
     }
-    Vol_in_Glow _e4 = vol_in_march_nodes(ray_39, end_14);
+    Vol_in_Glow _e4 = vol_in_march_nodes(ray_40, end_16);
     return _e4;
 }
 
-Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_40) {
+Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_41) {
     vec3 behind = vec3(0.0);
-    float end_15 = VOL_IN_FAR;
+    float end_17 = VOL_IN_FAR;
     float depth_7 = VOL_IN_NO_DEPTH;
-    Vol_in_Contact _e1 = vol_in_trace(ray_40);
+    Vol_in_Contact _e1 = vol_in_trace(ray_41);
     vec3 _e3 = vol_in_word3_(VOL_IN_AT_BACKGROUND);
     behind = _e3;
     if (_e1.hit) {
-        vec3 _e10 = vol_in_shade(ray_40, _e1);
+        vec3 _e10 = vol_in_shade(ray_41, _e1);
         behind = _e10;
-        end_15 = _e1.t;
+        end_17 = _e1.t;
         vec3 _e15 = vol_in_word3_(VOL_IN_AT_FORWARD);
-        float _e16 = vol_in_dot3_(ray_40.direction, _e15);
+        float _e16 = vol_in_dot3_(ray_41.direction, _e15);
         depth_7 = (_e1.t * _e16);
     }
-    float _e18 = end_15;
-    Vol_in_Glow _e19 = vol_in_march(ray_40, _e18);
+    float _e18 = end_17;
+    Vol_in_Glow _e19 = vol_in_march(ray_41, _e18);
     vec3 _e22 = behind;
     vec3 coarse = (_e19.coarse_light + (_e19.coarse_transmittance * _e22));
     vec3 _e27 = behind;
@@ -3973,15 +3805,15 @@ Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_40) {
 vec2 vol_in_place_in_pixel(uint index_19) {
     uint step_1 = ((index_19 + 1u) / 2u);
     uint signed = (((index_19 % 2u) == 1u) ? step_1 : (0u - step_1));
-    uvec2 place_10 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
-    return (vec2(place_10) * 1.5258789e-5);
+    uvec2 place_13 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
+    return (vec2(place_13) * 1.5258789e-5);
 }
 
-Vol_in_Ray vol_in_camera_ray(vec2 place_4) {
+Vol_in_Ray vol_in_camera_ray(vec2 place_6) {
     float _e5 = vol_frame_word(VOL_IN_AT_SIZE);
-    float u_5 = (((2.0 * place_4.x) / _e5) - 1.0);
+    float u_5 = (((2.0 * place_6.x) / _e5) - 1.0);
     float _e13 = vol_frame_word(5u);
-    float v_8 = (1.0 - ((2.0 * place_4.y) / _e13));
+    float v_8 = (1.0 - ((2.0 * place_6.y) / _e13));
     vec3 _e18 = vol_in_word3_(VOL_IN_AT_FORWARD);
     vec3 _e20 = vol_in_word3_(VOL_IN_AT_RIGHT);
     vec3 sideways = (_e18 + (_e20 * u_5));
@@ -3994,20 +3826,20 @@ Vol_in_Ray vol_in_camera_ray(vec2 place_4) {
 }
 
 float vol_in_comb_shift(uvec2 pixel, uint index_20) {
-    uint place_11 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
-    return ((float(((place_11 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+    uint place_14 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_14 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
 }
 
 Vol_in_Ray vol_in_pixel_ray(uvec2 pixel_1, uint index_21, uint corner) {
-    Vol_in_Ray ray_41 = Vol_in_Ray(vec3(0.0), vec3(0.0), 0.0);
+    Vol_in_Ray ray_42 = Vol_in_Ray(vec3(0.0), vec3(0.0), 0.0);
     bool is_probe = (corner < VOL_IN_NO_CORNER);
     vec2 _e5 = vol_in_place_in_pixel(index_21);
     vec2 aside_2 = (is_probe ? vec2(uvec2((corner % 2u), (corner / 2u))) : _e5);
     Vol_in_Ray _e15 = vol_in_camera_ray((vec2(pixel_1) + aside_2));
-    ray_41 = _e15;
+    ray_42 = _e15;
     float _e18 = vol_in_comb_shift(pixel_1, index_21);
-    ray_41.shift = (is_probe ? 0.0 : _e18);
-    Vol_in_Ray _e21 = ray_41;
+    ray_42.shift = (is_probe ? 0.0 : _e18);
+    Vol_in_Ray _e21 = ray_42;
     return _e21;
 }
 
@@ -4069,25 +3901,25 @@ Vol_in_Mean vol_in_add_sample(Vol_in_Mean old_1, Vol_in_Radiance sample_) {
 }
 
 bool vol_in_is_probed() {
-    bool local_11 = false;
+    bool local_8 = false;
     float _e1 = vol_frame_word(VOL_IN_AT_TOLERANCE);
     if ((_e1 > 0.0)) {
         float _e7 = vol_frame_word(VOL_IN_AT_SAMPLES);
-        local_11 = (uint(_e7) > VOL_IN_FIRST_ROUND);
+        local_8 = (uint(_e7) > VOL_IN_FIRST_ROUND);
     } else {
-        local_11 = false;
+        local_8 = false;
     }
-    bool _e12 = local_11;
+    bool _e12 = local_8;
     return _e12;
 }
 
-Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_8, uint last_4) {
+Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_9, uint last_4) {
     Vol_in_Mean mean_4 = Vol_in_Mean(0u, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
     uint corner_1 = VOL_IN_NO_CORNER;
-    bool local_12 = false;
-    bool local_13 = false;
-    bool local_14 = false;
-    mean_4 = before_8;
+    bool local_9 = false;
+    bool local_10 = false;
+    bool local_11 = false;
+    mean_4 = before_9;
     while(true) {
         uint _e6 = corner_1;
         if (!((_e6 < VOL_IN_NO_CORNER))) {
@@ -4095,16 +3927,16 @@ Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_8, uint last_4
             if ((_e13 < last_4)) {
                 Vol_in_Mean _e17 = mean_4;
                 bool _e18 = vol_in_is_done(_e17);
-                local_13 = !(_e18);
+                local_10 = !(_e18);
             } else {
-                local_13 = false;
+                local_10 = false;
             }
-            bool _e21 = local_13;
-            local_12 = _e21;
+            bool _e21 = local_10;
+            local_9 = _e21;
         } else {
-            local_12 = true;
+            local_9 = true;
         }
-        bool _e23 = local_12;
+        bool _e23 = local_9;
         if (_e23) {
         } else {
             break;
@@ -4129,11 +3961,11 @@ Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_8, uint last_4
                 bool _e41 = vol_in_is_probed();
                 if (_e41) {
                     uint _e45 = mean_4.count;
-                    local_14 = (_e45 == VOL_IN_FIRST_ROUND);
+                    local_11 = (_e45 == VOL_IN_FIRST_ROUND);
                 } else {
-                    local_14 = false;
+                    local_11 = false;
                 }
-                bool _e49 = local_14;
+                bool _e49 = local_11;
                 corner_1 = (_e49 ? 0u : VOL_IN_NO_CORNER);
             }
         }
@@ -4142,16 +3974,16 @@ Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_8, uint last_4
     return _e51;
 }
 
-float vol_distance(vec3 p_22) {
+float vol_distance(vec3 p_23) {
     float nearest = VOL_IN_FAR;
     float _e3 = nearest;
     return _e3;
 }
 
-float vol_density(vec3 p_23) {
+float vol_density(vec3 p_24) {
     float sum_4 = 0.0;
     float _e3 = sum_4;
-    float _e7 = vol_f7_density_cloud(p_23.x, p_23.y, p_23.z);
+    float _e7 = vol_f7_density_cloud(p_24.x, p_24.y, p_24.z);
     sum_4 = (_e3 + max(_e7, 0.0));
     float _e11 = sum_4;
     return _e11;
@@ -4166,31 +3998,31 @@ vec4 vol_radiance(vec3 origin_1, vec3 direction_4) {
     return vec4(_e6.color, (1.0 - clear_3));
 }
 
-vec4 vol_pixel(vec2 place_5) {
-    Vol_in_Ray _e1 = vol_in_camera_ray(place_5);
+vec4 vol_pixel(vec2 place_7) {
+    Vol_in_Ray _e1 = vol_in_camera_ray(place_7);
     Vol_in_Radiance _e2 = vol_in_radiance(_e1);
     vec3 t_45 = _e2.transmittance;
     float clear_4 = (((t_45.x + t_45.y) + t_45.z) * 0.33333334);
     return vec4(_e2.color, (1.0 - clear_4));
 }
 
-float vol_distance_cloud(vec3 p_24) {
-    float _e4 = vol_f2_region_cloud(p_24.x, p_24.y, p_24.z);
+float vol_distance_cloud(vec3 p_25) {
+    float _e4 = vol_f2_region_cloud(p_25.x, p_25.y, p_25.z);
     return _e4;
 }
 
-float vol_density_cloud(vec3 p_25) {
-    float _e4 = vol_f7_density_cloud(p_25.x, p_25.y, p_25.z);
+float vol_density_cloud(vec3 p_26) {
+    float _e4 = vol_f7_density_cloud(p_26.x, p_26.y, p_26.z);
     return _e4;
 }
 
-vec3 vol_colour_cloud(vec3 p_26) {
-    vec3 _e4 = vol_f8_colour_cloud(p_26.x, p_26.y, p_26.z);
+vec3 vol_colour_cloud(vec3 p_27) {
+    vec3 _e4 = vol_f8_colour_cloud(p_27.x, p_27.y, p_27.z);
     return _e4;
 }
 
-vec3 vol_local_cloud(vec3 p_27) {
-    vec3 _e4 = vol_f9_local_cloud(p_27.x, p_27.y, p_27.z);
+vec3 vol_local_cloud(vec3 p_28) {
+    vec3 _e4 = vol_f9_local_cloud(p_28.x, p_28.y, p_28.z);
     return _e4;
 }
 

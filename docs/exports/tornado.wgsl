@@ -20,7 +20,7 @@ var<private> vol_uniforms: array<vec4<f32>, 7> = array<vec4<f32>, 7>(
   vec4<f32>((-0.4f), 0.8f, 0.3f, 12.0f),
 );
 fn vol_uniform_word(index: u32) -> f32 { return vol_uniforms[index >> 2u][index & 3u]; }
-var<private> vol_curves: array<vec4<f32>, 39> = array<vec4<f32>, 39>(
+var<private> vol_curves: array<vec4<f32>, 45> = array<vec4<f32>, 45>(
   vec4<f32>(0.2f, 1.1f, 0.1f, (-2.9802323e-9f)),
   vec4<f32>((-2.3841858e-8f), (-1.4901161e-9f), 0.0f, (-0.55f)),
   vec4<f32>(0.0f, (-0.2f), 0.0f, (-0.1f)),
@@ -34,6 +34,8 @@ var<private> vol_curves: array<vec4<f32>, 39> = array<vec4<f32>, 39>(
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.33686078f, 0.9263671f),
   vec4<f32>(0.16843039f, (-0.33686078f), 0.9263671f, (-0.16843039f)),
+  vec4<f32>((-4.5778493e-6f), (-4.598711e-6f), (-4.576359e-6f), 0.20000459f),
+  vec4<f32>(1.1000047f, 0.10000458f, 0.0f, 0.0f),
   vec4<f32>(0.2f, 1.1f, 0.1f, (-2.9802323e-9f)),
   vec4<f32>((-2.3841858e-8f), (-1.4901161e-9f), 0.0f, 0.55f),
   vec4<f32>(0.0f, (-0.2f), 0.0f, (-0.1f)),
@@ -47,6 +49,10 @@ var<private> vol_curves: array<vec4<f32>, 39> = array<vec4<f32>, 39>(
   vec4<f32>(0.0f, 2.2f, 0.0f, 0.0f),
   vec4<f32>((-4.7683717e-8f), 0.0f, (-0.33686078f), 0.9263671f),
   vec4<f32>((-0.16843039f), 0.0f, 1.0f, 0.0f),
+  vec4<f32>((-4.5778493e-6f), 1.0999953f, (-4.576359e-6f), 0.20000459f),
+  vec4<f32>(2.2000048f, 0.10000458f, 0.0f, 0.0f),
+  vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
+  vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
@@ -129,7 +135,7 @@ var<private> vol_permutation: array<vec4<u32>, 64> = array<vec4<u32>, 64>(
   vec4<u32>(215u, 61u, 156u, 180u),
 );
 fn vol_permutation_word(index: u32) -> u32 { return vol_permutation[index >> 2u][index & 3u]; }
-var<private> vol_frame: array<vec4<f32>, 19> = array<vec4<f32>, 19>(
+var<private> vol_frame: array<vec4<f32>, 43> = array<vec4<f32>, 43>(
   vec4<f32>(0.0f, 0.0f, 960.0f, 540.0f),
   vec4<f32>(960.0f, 540.0f, 0.004639909f, 0.009279818f),
   vec4<f32>(0.0f, 1.1f, 4.5f, 0.0f),
@@ -138,9 +144,9 @@ var<private> vol_frame: array<vec4<f32>, 19> = array<vec4<f32>, 19>(
   vec4<f32>(0.0033465358f, 0.0051815165f, 0.014443844f, 1.0f),
   vec4<f32>(1.0f, 0.0f, 1.0f, 3.0f),
   vec4<f32>((-0.60002863f), (-0.60002863f), (-0.60002863f), 1.000029f),
-  vec4<f32>(2.8000307f, 0.8000288f, 0.0f, 16.0f),
-  vec4<f32>(1.0f, (-0.42399916f), 0.8479983f, 0.31799936f),
-  vec4<f32>(12.0f, 12.0f, 12.0f, 1.0f),
+  vec4<f32>(2.8000307f, 0.8000288f, 16.0f, 1.0f),
+  vec4<f32>((-0.42399916f), 0.8479983f, 0.31799936f, 12.0f),
+  vec4<f32>(12.0f, 12.0f, 1.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
@@ -148,36 +154,39 @@ var<private> vol_frame: array<vec4<f32>, 19> = array<vec4<f32>, 19>(
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
-  vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
+  vec4<f32>(0.0f, 0.0f, 0.0f, (-0.07849332f)),
+  vec4<f32>((-0.03100111f), (-0.08124195f), 0.12536836f, 0.16850124f),
+  vec4<f32>(0.10467947f, (-0.038403668f), 0.107851274f, (-0.064069755f)),
+  vec4<f32>(0.1727788f, 0.3046489f, 0.13125731f, (-0.008553555f)),
+  vec4<f32>(0.24621235f, (-0.05407174f), 0.21792875f, 0.44128785f),
+  vec4<f32>(0.15875934f, 0.010998466f, 0.3846571f, (-0.051262047f)),
+  vec4<f32>(0.26087677f, 0.57784307f, 0.18719967f, 0.020236308f),
+  vec4<f32>(0.52379215f, (-0.05564443f), 0.30163896f, 0.71370804f),
+  vec4<f32>(0.21658209f, 0.019191828f, 0.6642433f, (-0.067210674f)),
+  vec4<f32>(0.3401835f, 0.84825695f, 0.24689835f, 0.007948153f),
+  vec4<f32>(0.8066414f, (-0.08580606f), 0.3764272f, 0.98085874f),
+  vec4<f32>(0.27799374f, (-0.0131498f), 0.9516064f, (-0.1115874f)),
+  vec4<f32>(0.41002518f, 1.1108938f, 0.3100251f, (-0.04768115f)),
+  vec4<f32>(1.087319f, (-0.14611875f), 0.44455653f, 1.2501811f),
+  vec4<f32>(0.34455645f, (-0.0956435f), 1.2085621f, (-0.1894001f)),
+  vec4<f32>(0.48001888f, 1.403938f, 0.3815878f, (-0.15293887f)),
+  vec4<f32>(1.3255475f, (-0.23986568f), 0.5123142f, 1.5619527f),
+  vec4<f32>(0.41955334f, (-0.21955688f), 1.4378978f, (-0.29706544f)),
+  vec4<f32>(0.5414322f, 1.7246025f, 0.4580031f, (-0.29523104f)),
+  vec4<f32>(1.5453081f, (-0.36114627f), 0.5671063f, 1.8921922f),
+  vec4<f32>(0.4970839f, (-0.37969407f), 1.6475452f, (-0.43204588f)),
+  vec4<f32>(0.5890693f, 2.0649552f, 0.53673345f, (-0.47268757f)),
+  vec4<f32>(1.7444439f, (-0.5097059f), 0.6070627f, 2.2430565f),
+  vec4<f32>(0.57689345f, (-0.5739689f), 1.8359008f, (-0.5940731f)),
+  vec4<f32>(0.62084395f, 2.4265997f, 0.6175107f, 0.0f),
 );
 fn vol_frame_word(index: u32) -> f32 { return vol_frame[index >> 2u][index & 3u]; }
-var<private> vol_input: array<vec4<f32>, 24> = array<vec4<f32>, 24>(
-  vec4<f32>((-0.07849332f), (-0.03100111f), (-0.08124195f), 0.12536836f),
-  vec4<f32>(0.16850124f, 0.10467947f, (-0.038403668f), 0.107851274f),
-  vec4<f32>((-0.064069755f), 0.1727788f, 0.3046489f, 0.13125731f),
-  vec4<f32>((-0.008553555f), 0.24621235f, (-0.05407174f), 0.21792875f),
-  vec4<f32>(0.44128785f, 0.15875934f, 0.010998466f, 0.3846571f),
-  vec4<f32>((-0.051262047f), 0.26087677f, 0.57784307f, 0.18719967f),
-  vec4<f32>(0.020236308f, 0.52379215f, (-0.05564443f), 0.30163896f),
-  vec4<f32>(0.71370804f, 0.21658209f, 0.019191828f, 0.6642433f),
-  vec4<f32>((-0.067210674f), 0.3401835f, 0.84825695f, 0.24689835f),
-  vec4<f32>(0.007948153f, 0.8066414f, (-0.08580606f), 0.3764272f),
-  vec4<f32>(0.98085874f, 0.27799374f, (-0.0131498f), 0.9516064f),
-  vec4<f32>((-0.1115874f), 0.41002518f, 1.1108938f, 0.3100251f),
-  vec4<f32>((-0.04768115f), 1.087319f, (-0.14611875f), 0.44455653f),
-  vec4<f32>(1.2501811f, 0.34455645f, (-0.0956435f), 1.2085621f),
-  vec4<f32>((-0.1894001f), 0.48001888f, 1.403938f, 0.3815878f),
-  vec4<f32>((-0.15293887f), 1.3255475f, (-0.23986568f), 0.5123142f),
-  vec4<f32>(1.5619527f, 0.41955334f, (-0.21955688f), 1.4378978f),
-  vec4<f32>((-0.29706544f), 0.5414322f, 1.7246025f, 0.4580031f),
-  vec4<f32>((-0.29523104f), 1.5453081f, (-0.36114627f), 0.5671063f),
-  vec4<f32>(1.8921922f, 0.4970839f, (-0.37969407f), 1.6475452f),
-  vec4<f32>((-0.43204588f), 0.5890693f, 2.0649552f, 0.53673345f),
-  vec4<f32>((-0.47268757f), 1.7444439f, (-0.5097059f), 0.6070627f),
-  vec4<f32>(2.2430565f, 0.57689345f, (-0.5739689f), 1.8359008f),
-  vec4<f32>((-0.5940731f), 0.62084395f, 2.4265997f, 0.6175107f),
+var<private> vol_input: array<vec4<f32>, 1> = array<vec4<f32>, 1>(
+  vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
 );
 fn vol_input_word(index: u32) -> f32 { return vol_input[index >> 2u][index & 3u]; }
+
+const VOL_CURVES: u32 = 1u;
 
 // Elementary functions in f32, the same text as `runtime-cpu/src/math/fun.rs`, where ranges,
 // errors and sources stand. Needs nothing else from the module.
@@ -592,10 +601,10 @@ fn vol_fbm_gradient(p: vec3f, octaves: f32, lacunarity: f32, gain: f32, seed: u3
 }
 
 // Closest point on a curve of canonical pieces in f32, the same text as
-// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl` and
-// `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
+// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl`, the number of curves
+// VOL_CURVES and `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
 
-const VOL_PIECE_WORDS: u32 = 52u;
+const VOL_PIECE_WORDS: u32 = 60u;
 // Below this a divisor counts as it: quotients stay finite.
 const VOL_TINY: f32 = 1e-30;
 // Distance to a curve without pieces, scene units.
@@ -604,6 +613,12 @@ const VOL_FAR: f32 = 1e18;
 const VOL_REACH: f32 = 1e8;
 // Largest stretch reported.
 const VOL_STRETCH: f32 = 1e6;
+
+// By how much a squared distance is taken larger before boxes are compared with it: more than the kernels are off far from
+// the curve.
+const VOL_LOOSE: f32 = 1.00001;
+// What they are off near it, over the length of the curve, several times.
+const VOL_SLACK: f32 = 4e-6;
 
 // A foot at an end is held there if its offset leans along the tangent by more than this share.
 const VOL_LEAN: f32 = 1e-3;
@@ -897,19 +912,55 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> Vol_CurveSlopes {
     );
 }
 
-// Where a curve is: pieces `first .. first + count` of the buffer.
+// Where a curve is: pieces `first .. first + count` of the buffer; `number` among all curves.
 struct Vol_Curve {
     first: u32,
     count: u32,
+    number: u32,
 }
 
-// The closest point of a curve, from `vol_held_point`. Every point visits the same piece at the same time.
+// The last search on a curve, from which the next one is most often near.
+struct Vol_LastSearch {
+    some: bool,
+    point: vec3f,
+    found: Vol_Search,
+    // Distance of the foot at most.
+    reach: f32,
+}
+
+var<private> vol_last_search: array<Vol_LastSearch, VOL_CURVES>;
+
+// Squared distance from a point to the box around a piece; 0 inside.
+fn vol_box_dist_sq(p: vec3f, word: u32) -> f32 {
+    let below = vol_curve_vector(word + 52u) - p;
+    let above = p - vol_curve_vector(word + 55u);
+    let x = max(max(below.x, above.x), 0.0);
+    let y = max(max(below.y, above.y), 0.0);
+    let z = max(max(below.z, above.z), 0.0);
+    return ((x * x) + (y * y)) + (z * z);
+}
+
+// The closest point of a curve, from `vol_held_point`, as if every piece were visited: one that is passed over is in a box
+// farther away than the winner can be. That is at most as far away as the last foot, which the point has moved away from.
 fn vol_search(p: vec3f, curve: Vol_Curve) -> Vol_Search {
-    var search = Vol_Search(VOL_LARGEST, 0.0, 0u, false);
-    // Visit the pieces along the curve.
-    for (var index = 0u; index < curve.count; index = index + 1u) {
-        search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
+    let last = vol_last_search[curve.number];
+    if (last.some & all(last.point == p)) {
+        return last.found;
     }
+    let way = p - last.point;
+    let reach = last.reach + sqrt(vol_dot(way, way));
+    var bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
+    // Visit the pieces along the curve.
+    var search = Vol_Search(VOL_LARGEST, 0.0, 0u, false);
+    for (var index = 0u; index < curve.count; index = index + 1u) {
+        let word = (curve.first + index) * VOL_PIECE_WORDS;
+        if (vol_box_dist_sq(p, word) <= bound) {
+            search = vol_visit(search, p, word, index);
+            bound = min(bound, search.dist_sq * VOL_LOOSE);
+        }
+    }
+    let slack = VOL_SLACK * vol_curve_word((curve.first * VOL_PIECE_WORDS) + 39u);
+    vol_last_search[curve.number] = Vol_LastSearch(true, p, search, sqrt(search.dist_sq) + slack);
     return search;
 }
 
@@ -981,7 +1032,7 @@ fn vol_f2_region_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v9: f32 = vol_uniforms[3].w;
   let v10: f32 = vol_uniforms[3].z;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v12 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u));
+  let v12 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u, 0u));
   let v13: f32 = v12.t;
   let v14: f32 = v12.arc_length;
   let v15: f32 = v12.curve_length;
@@ -1025,7 +1076,7 @@ fn vol_f3_interior_cloud(x0: f32, x1: f32, x2: f32) -> Vol_Out10 {
   let v4: f32 = 0.52f;
   let v8: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v9 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u));
+  let v9 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u, 0u));
   let v10: f32 = v9.t;
   let v11: f32 = v9.arc_length;
   let v12: f32 = v9.x;
@@ -1082,7 +1133,7 @@ fn vol_f4_extinction_cloud(x0: f32, x1: f32, x2: f32) -> vec4f {
   let v2: f32 = 0.52f;
   let v6: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v7 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u));
+  let v7 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u, 0u));
   let v8: f32 = v7.t;
   let v9: f32 = v7.arc_length;
   let v10: f32 = v7.x;
@@ -1171,7 +1222,7 @@ fn vol_f7_density_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v11: f32 = vol_uniforms[3].z;
   let v13: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v14 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u));
+  let v14 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u, 0u));
   let v15: f32 = v14.t;
   let v16: f32 = v14.arc_length;
   let v17: f32 = v14.curve_length;
@@ -1255,7 +1306,7 @@ fn vol_f9_local_cloud(x0: f32, x1: f32, x2: f32) -> vec3f {
   let v0: f32 = 0.08f;
   let v1: f32 = 0.52f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v5 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u));
+  let v5 = vol_closest(vec3f(x0, x1, x2), Vol_Curve(0u, 2u, 0u));
   let v6: f32 = v5.t;
   let v7: f32 = v5.arc_length;
   let v8: f32 = v5.x;
@@ -1309,17 +1360,20 @@ const VOL_IN_MEDIUM_SLOTS: u32 = 1u;
 const VOL_IN_LIGHT_SLOTS: u32 = 1u;
 const VOL_IN_TRANSFER_SIZE: u32 = 256u;
 const VOL_IN_OBJECT_WORDS: u32 = 8u;
-const VOL_IN_MEDIUM_WORDS: u32 = 9u;
+const VOL_IN_MEDIUM_WORDS: u32 = 8u;
 const VOL_IN_CELL_WORDS: u32 = 6u;
+const VOL_IN_CELLS_WORDS: u32 = 384u;
 const VOL_IN_LIGHT_WORDS: u32 = 12u;
 const VOL_IN_PIXEL_WORDS: u32 = 15u;
 const VOL_IN_AT_OBJECTS: u32 = 27u;
 const VOL_IN_AT_MEDIA: u32 = 27u;
-const VOL_IN_AT_LIGHTS: u32 = 36u;
+const VOL_IN_AT_LIGHTS: u32 = 35u;
+const VOL_IN_AT_CELLS: u32 = 75u;
 const VOL_IN_CORRECTED: bool = true;
 const VOL_IN_SOFT_LIGHTS: bool = false;
 const VOL_IN_OCCLUDING_LIGHTS: bool = false;
 const VOL_IN_LIGHT_GRIDS: bool = true;
+const VOL_IN_LIT_MEDIA: bool = true;
 const VOL_IN_STYLES: bool = false;
 const VOL_IN_MARCHED_SHAFTS: bool = false;
 
@@ -2141,7 +2195,7 @@ fn vol_in_depth_by_nodes(ray: Vol_in_Ray, end: f32) -> vec3f {
     var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_SHADOW_STEP));
     var weights: array<f32, VOL_IN_MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
         // Optical depth of each node, all media together.
         if (vol_in_weigh(ray, &comb, node, &weights)) {
             depth += vol_in_node_depth(vol_in_ray_at(ray, vol_in_node_distance(node, comb.step, comb.offset)), &weights);
@@ -2156,7 +2210,8 @@ fn vol_in_depth_by_nodes(ray: Vol_in_Ray, end: f32) -> vec3f {
 
 fn vol_in_node_depth(point: vec3f, weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>) -> vec3f {
     var depth = vec3f(0.0);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let weight = (*weights)[medium];
         if (weight > 0.0) {
             let matter = vol_in_medium_extinction(medium, point);
@@ -2171,8 +2226,8 @@ fn vol_in_depth_by_panels(ray: Vol_in_Ray, end: f32) -> vec3f {
     // Density and extinction of each medium at the node before.
     var before: array<vec4f, VOL_IN_MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = vol_in_next_node(&comb, node, 1)) {
         // Optical depth of each panel, all media together.
         depth += vol_in_panel_depth(ray, &comb, node, &before);
         // Go on while the ray is not dark yet.
@@ -2187,35 +2242,24 @@ fn vol_in_panel_depth(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i
     let step_size = (*comb).step;
     let t = vec2f(vol_in_panel_node(comb, node), vol_in_panel_node(comb, node + 1));
     var depth = vec3f(0.0);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let own = (*comb).own[medium];
         let between = vol_in_find_walls(ray, medium, comb, node, t);
-        let next = between.next;
+        let stretch = vol_in_panel_stretch(own, t, between);
         var first = (*before)[medium];
         var last = vec4f(0.0);
-        var stretch = t;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = VOL_IN_AFTER; kind < (VOL_IN_WALL + between.count); kind++) {
-            let is_wall = kind >= VOL_IN_WALL;
-            let wall = max(kind, VOL_IN_WALL) - VOL_IN_WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var matter = vec4f(0.0);
-            if (is_wall || (next < 0.0)) {
-                matter = vol_in_medium_extinction(medium, vol_in_ray_at(ray, distance));
-            }
-            if (!is_wall) {
-                (*before)[medium] = matter;
-                last = matter;
-            } else if (vol_in_wall_ends(own, wall)) {
-                last = matter;
-                stretch.y = distance;
-            } else {
-                first = matter;
-                stretch.x = distance;
-            }
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = vol_in_new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let at_stop = end == VOL_IN_STOP_END;
+            let matter = vol_in_medium_extinction(medium, vol_in_ray_at(ray, select(stretch.x, stretch.y, at_stop)));
+            first = select(matter, first, at_stop);
+            last = select(last, matter, at_stop);
         }
+        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
         if (vol_in_has_panel(comb, node, t, own, between)) {
-            let open = vol_in_open_ends(comb, node, t, own, next);
+            let open = vol_in_open_ends(comb, node, t, own, between.next);
             let masses = vol_in_panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }
@@ -2548,6 +2592,9 @@ fn vol_in_distance_above(
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
+// After the last node.
+const VOL_IN_NO_NODE: i32 = 0x7fffffff;
+
 struct Vol_in_Comb {
     step: f32,
     // Where node 0 is, in steps.
@@ -2556,11 +2603,18 @@ struct Vol_in_Comb {
     // Nodes that may be inside some medium.
     first: i32,
     last: i32,
-    // The same for each medium.
-    ranges: array<vec2i, VOL_IN_MEDIUM_SLOTS>,
+    // The same for each medium, and of those this run or the next one.
+    all: array<Vol_in_Runs, VOL_IN_MEDIUM_SLOTS>,
+    runs: array<vec2i, VOL_IN_MEDIUM_SLOTS>,
     // Signed distances of each medium at the node before and at the next one.
     before: array<f32, VOL_IN_MEDIUM_SLOTS>,
     own: array<f32, VOL_IN_MEDIUM_SLOTS>,
+}
+
+// First and last nodes of up to four runs, in any order; NO_NODE is the first of none.
+struct Vol_in_Runs {
+    first: vec4i,
+    last: vec4i,
 }
 
 // Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -2576,76 +2630,124 @@ fn vol_in_medium_word(medium: u32) -> u32 {
     return VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-// inside are in the range or next to it, and so are the panels on both sides.
-fn vol_in_node_range(ray: Vol_in_Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> vec2i {
-    let at = vol_in_medium_word(medium);
+// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
+// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn vol_in_node_range(ray: Vol_in_Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Vol_in_Comb>) -> vec2i {
+    let step_size = (*comb).step;
     let reach = vec3f(1.01 * step_size);
-    let span = vol_in_slab(ray, vol_in_word3(at + 1u) - reach, vol_in_word3(at + 4u) + reach);
-    let leave = min(span.leave, end);
+    let span = vol_in_slab(ray, lo - reach, hi + reach);
+    let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
-    let first = min(max(floor((span.entry / step_size) - offset), 0.0), VOL_IN_LAST_NODE);
-    let last = min(floor((max(leave, 0.0) / step_size) - offset), VOL_IN_LAST_NODE);
-    let none = (span.entry > leave) | (vol_frame_word(at) == 0.0);
-    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
-}
-
-// Smallest range that holds both.
-fn vol_in_range_union(a: vec2i, b: vec2i) -> vec2i {
-    let both = vec2i(min(a.x, b.x), max(a.y, b.y));
-    return select(select(both, a, b.x > b.y), b, a.x > a.y);
+    let first = min(max(floor((span.entry / step_size) - (*comb).offset), 0.0), VOL_IN_LAST_NODE);
+    let last = min(floor((max(leave, 0.0) / step_size) - (*comb).offset), VOL_IN_LAST_NODE);
+    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), span.entry > leave);
 }
 
 // Lays out the nodes of the ray up to its end.
 fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32) -> Vol_in_Comb {
     var comb: Vol_in_Comb;
     comb.step = step_size;
+    comb.offset = vol_in_first_node(ray.shift);
     comb.end = end;
-    let offset = vol_in_first_node(ray.shift);
-    comb.offset = offset;
-    var whole = vec2i(0, -1);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
-        let range = vol_in_node_range(ray, medium, step_size, offset, end);
-        comb.ranges[medium] = range;
-        whole = vol_in_range_union(whole, range);
-    }
-    comb.first = whole.x;
-    comb.last = min(whole.y, whole.x + (VOL_IN_MAX_NODES - 1));
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    comb.first = VOL_IN_NO_NODE;
+    comb.last = -1;
+    {
+        let medium = 0u;
+        let runs = vol_in_find_runs(ray, medium, &comb);
+        comb.all[medium] = runs;
+        comb.runs[medium] = vol_in_run_from(runs, 0);
+        comb.first = min(comb.first, comb.runs[medium].x);
+        comb.last = max(comb.last, max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w)));
         comb.before[medium] = VOL_IN_FAR;
         comb.own[medium] = VOL_IN_FAR;
     }
+    comb.last = min(comb.last, min(comb.first, VOL_IN_NO_NODE - VOL_IN_MAX_NODES) + (VOL_IN_MAX_NODES - 1));
     return comb;
 }
 
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn vol_in_wall(ray: Vol_in_Ray, medium: u32, range: vec2i, t: f32, node: i32, step_size: f32, end: f32) -> f32 {
-    var region = VOL_IN_FAR;
-    let some = range.x <= range.y;
-    if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
-        let point = vol_in_ray_at(ray, t);
-        // What is not within a step of a cell is outside, and so are its neighbours.
-        if (vol_in_near_cell(medium, point, step_size)) {
-            region = vol_in_medium_region(medium, point);
-        }
-    }
-    return max(region, max(t - end, -t));
-}
-
-// Whether a point is within a step of a cell of a medium; a medium without cells may be anywhere.
-fn vol_in_near_cell(medium: u32, point: vec3f, step_size: f32) -> bool {
+// Finds the runs of nodes that may be inside a medium: where the ray passes through cells, or anywhere in the box of a
+// medium without cells.
+fn vol_in_find_runs(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>) -> Vol_in_Runs {
     let at = vol_in_medium_word(medium);
-    let count = u32(vol_frame_word(at + 8u));
-    let reach = vec3f(1.01 * step_size);
-    var near = count == 0u;
-    var cell = u32(vol_frame_word(at + 7u));
+    var runs = Vol_in_Runs(vec4i(VOL_IN_NO_NODE), vec4i(-1));
+    let whole = vol_in_node_range(ray, vol_in_word3(at + 1u), vol_in_word3(at + 4u), comb);
+    if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
+        return runs;
+    }
+    let count = u32(vol_frame_word(at + 7u));
+    if (count == 0u) {
+        return vol_in_add_run(runs, whole);
+    }
+    var cell = VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let lo = vol_in_input3(cell) - reach;
-        let hi = vol_in_input3(cell + 3u) + reach;
-        near = near | vol_in_contains(lo, hi, point);
+        let range = vol_in_node_range(ray, vol_in_word3(cell), vol_in_word3(cell + 3u), comb);
+        if (range.x <= range.y) {
+            runs = vol_in_add_run(runs, range);
+        }
         cell += VOL_IN_CELL_WORDS;
     }
-    return near;
+    return runs;
+}
+
+// Adds nodes to those that they continue, else as a run of their own; where there are four, to one of them.
+fn vol_in_add_run(before: Vol_in_Runs, range: vec2i) -> Vol_in_Runs {
+    // A node beside each run is looked at as well.
+    let continued = (before.first <= vec4i(range.y + 2)) & (before.last >= vec4i(range.x - 2));
+    let own_first = select(vec4i(VOL_IN_NO_NODE), before.first, continued);
+    let own_last = select(vec4i(-1), before.last, continued);
+    let first = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    let last = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    let kept_first = select(before.first, vec4i(VOL_IN_NO_NODE), continued);
+    let kept_last = select(before.last, vec4i(-1), continued);
+    let free = kept_first == vec4i(VOL_IN_NO_NODE);
+    let place = vec4<bool>(
+        free.x,
+        free.y & !free.x,
+        free.z & !(free.x | free.y),
+        !(free.x | free.y | free.z),
+    );
+    return Vol_in_Runs(
+        select(kept_first, min(kept_first, vec4i(first)), place),
+        select(kept_last, max(kept_last, vec4i(last)), place),
+    );
+}
+
+// The nodes of a run from one on: of the first that does not end before it.
+fn vol_in_run_from(runs: Vol_in_Runs, node: i32) -> vec2i {
+    let first = select(vec4i(VOL_IN_NO_NODE), max(runs.first, vec4i(node)), runs.last >= vec4i(node));
+    let least = min(min(first.x, first.y), min(first.z, first.w));
+    let last = select(vec4i(node), runs.last, first == vec4i(least));
+    return vec2i(least, max(max(last.x, last.y), max(last.z, last.w)));
+}
+
+// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
+fn vol_in_next_node(comb: ptr<function, Vol_in_Comb>, node: i32, lead: i32) -> i32 {
+    let after = node + 1;
+    var first = VOL_IN_NO_NODE;
+    {
+        let medium = 0u;
+        if ((*comb).runs[medium].y < after) {
+            (*comb).runs[medium] = vol_in_run_from((*comb).all[medium], after);
+        }
+        first = min(first, (*comb).runs[medium].x);
+    }
+    let next = max(after, first - lead);
+    // Distances say nothing about nodes farther on.
+    {
+        let medium = 0u;
+        (*comb).before[medium] = select((*comb).before[medium], VOL_IN_FAR, next > after);
+        (*comb).own[medium] = select((*comb).own[medium], VOL_IN_FAR, next > after);
+    }
+    return next;
+}
+
+// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
+fn vol_in_wall(ray: Vol_in_Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
+    var region = VOL_IN_FAR;
+    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
+        region = vol_in_medium_region(medium, vol_in_ray_at(ray, t));
+    }
+    return max(region, max(t - end, -t));
 }
 
 // Part of the interval between two neighbouring nodes that the first stands for, given the signed
@@ -2657,16 +2759,17 @@ fn vol_in_share(own: f32, other: f32, step_size: f32) -> f32 {
 }
 
 // The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before the first one: so that regions are asked at one place of the text,
+// come in order, from two before each run: so that regions are asked at one place of the text,
 // since drivers write them out at each.
 fn vol_in_weigh(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i32, weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>) -> bool {
     var any_inside = false;
     let step_size = (*comb).step;
     let t = vol_in_node_distance(node + 1, step_size, (*comb).offset);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let before = (*comb).before[medium];
         let own = (*comb).own[medium];
-        let after = vol_in_wall(ray, medium, (*comb).ranges[medium], t, node + 1, step_size, (*comb).end);
+        let after = vol_in_wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
         let weight = vol_in_share(own, before, step_size) + vol_in_share(own, after, step_size);
         let is_inside = (own < 0.0) & (node >= (*comb).first);
         (*weights)[medium] = select(0.0, weight, is_inside);
@@ -2763,7 +2866,7 @@ const VOL_IN_NO_MORE: u32 = 3u;
 struct Vol_in_Between {
     // Signed distance at the node after.
     next: f32,
-    // Walls, of which there are none, one, or two around a chord.
+    // The first and the last wall: there are none, one, or two around a chord.
     walls: vec2f,
     count: u32,
 }
@@ -2772,8 +2875,8 @@ struct Vol_in_Between {
 // the text, since drivers write it out at each.
 fn vol_in_find_walls(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f) -> Vol_in_Between {
     let own = (*comb).own[medium];
-    let range = (*comb).ranges[medium];
-    let known = (range.x <= range.y) & ((node + 1) >= range.x) & (node <= range.y);
+    let run = (*comb).runs[medium];
+    let known = ((node + 1) >= run.x) & (node <= run.y);
     var between = Vol_in_Between(VOL_IN_FAR, vec2f(0.0), 0u);
     var gap: Vol_in_Gap;
     var crossing: Vol_in_Crossing;
@@ -2791,7 +2894,7 @@ fn vol_in_find_walls(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Co
         }
         let point = vol_in_ray_at(ray, probe);
         var value = VOL_IN_FAR;
-        if ((aim != VOL_IN_THE_NODE) || (known && vol_in_near_cell(medium, point, (*comb).step))) {
+        if ((aim != VOL_IN_THE_NODE) || known) {
             value = vol_in_medium_region(medium, point);
         }
         let found = vec2f(probe, value);
@@ -2827,7 +2930,8 @@ fn vol_in_find_walls(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Co
         } else {
             crossing = vol_in_crossing_narrowed(crossing, found);
             if (round == VOL_IN_WALL_ROUNDS) {
-                between.walls[between.count] = vol_in_crossing_probe(crossing);
+                let wall = vol_in_crossing_probe(crossing);
+                between.walls = select(vec2f(between.walls.x, wall), vec2f(wall), between.count == 0u);
                 between.count += 1u;
                 crossing = other;
                 aim = select(VOL_IN_NO_MORE, VOL_IN_A_WALL, between.count < wanted);
@@ -2845,9 +2949,21 @@ fn vol_in_has_panel(comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f, own: 
     return (node >= (*comb).first) & (t.x < t.y) & some;
 }
 
-// Whether a wall is where its panel ends: the first one after a node inside, the second one otherwise.
-fn vol_in_wall_ends(own: f32, wall: u32) -> bool {
-    return (own < 0.0) | (wall == 1u);
+// The two ends of a panel: where it begins, and where it stops.
+const VOL_IN_START_END: u32 = 0u;
+const VOL_IN_STOP_END: u32 = 1u;
+
+// Distances of the ends of a panel between two nodes: those inside, else walls.
+fn vol_in_panel_stretch(own: f32, t: vec2f, between: Vol_in_Between) -> vec2f {
+    return select(between.walls, t, vec2<bool>(own < 0.0, between.next < 0.0));
+}
+
+// From which of the ends on, and before which, the medium has yet to be sampled: at a node inside that a panel begins with
+// it has been.
+fn vol_in_new_ends(own: f32, between: Vol_in_Between) -> vec2u {
+    let has_walls = between.count > 0u;
+    let first = select(VOL_IN_STOP_END, VOL_IN_START_END, (own >= 0.0) & has_walls);
+    return vec2u(first, select(VOL_IN_STOP_END, VOL_IN_STOP_END + 1u, (between.next < 0.0) | has_walls));
 }
 
 // Integral of the positive part of a density over a stretch of a panel as long as a step, by its values at
@@ -2905,7 +3021,8 @@ fn vol_in_place_visibility(
     scatter: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>,
 ) -> vec3f {
     var asked = false;
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let scatters = any((*scatter)[medium] > vec3f(0.0));
         asked = asked | (scatters & (vol_frame_word(vol_in_medium_word(medium)) == VOL_IN_SHADOWED));
     }
@@ -2931,7 +3048,8 @@ fn vol_in_scatter_light(
     source: ptr<function, array<vec3f, VOL_IN_MEDIUM_SLOTS>>,
 ) {
     let angles = vol_in_turn(lamp.direction, direction);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let lighting = vol_frame_word(vol_in_medium_word(medium));
         let part = (*scatter)[medium];
         if (any(part > vec3f(0.0)) & (lighting > VOL_IN_UNLIT)) {
@@ -2954,25 +3072,23 @@ fn vol_in_turn(toward: vec3f, direction: vec3f) -> vec2f {
 // What media along a ray add and take away, by panel.wgsl.
 // Twin: runtime-cpu/src/render/corrected.rs, which says why.
 
-// Ends of panels: the node before, the node after, the walls between them.
-const VOL_IN_BEFORE: u32 = 0u;
-const VOL_IN_AFTER: u32 = 1u;
-const VOL_IN_WALL: u32 = 2u;
-const VOL_IN_MOST_WALLS: u32 = 2u;
 const VOL_IN_THIN: f32 = 0.125;
 const VOL_IN_THICK: f32 = 0.5;
-const VOL_IN_END_SLOTS: u32 = (VOL_IN_WALL + VOL_IN_MOST_WALLS) * VOL_IN_MEDIUM_SLOTS;
 
-// The panels between two nodes.
+// Where a panel of a medium begins or stops.
+struct Vol_in_PanelEnd {
+    interior: Vol_in_Interior,
+    // Light sent towards the eye, per unit of density.
+    source: vec3f,
+    distance: f32,
+    // Whether it is a node; else it is a wall.
+    is_node: bool,
+}
+
+// The panels between two nodes, one for each medium.
 struct Vol_in_Panels {
-    // Each medium at each kind of end.
-    interiors: array<Vol_in_Interior, VOL_IN_END_SLOTS>,
-    // Light sent towards the eye there, per unit of density.
-    sources: array<vec3f, VOL_IN_END_SLOTS>,
-    // Distances of the walls.
-    walls: array<vec2f, VOL_IN_MEDIUM_SLOTS>,
-    // Kinds of the two ends of each medium's panel.
-    ends: array<vec2u, VOL_IN_MEDIUM_SLOTS>,
+    starts: array<Vol_in_PanelEnd, VOL_IN_MEDIUM_SLOTS>,
+    stops: array<Vol_in_PanelEnd, VOL_IN_MEDIUM_SLOTS>,
     // Integral of the density that each end stands for.
     masses: array<vec2f, VOL_IN_MEDIUM_SLOTS>,
     depth: vec3f,
@@ -2986,14 +3102,15 @@ fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     var styled = vol_in_style_rays(ray, end);
     var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
     var panels: Vol_in_Panels;
-    panels.lit = false;
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = vol_in_next_node(&comb, node, 1)) {
         let t = vec2f(vol_in_panel_node(&comb, node), vol_in_panel_node(&comb, node + 1));
         vol_in_find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = vol_in_light_ends(ray, t, &styled, &panels);
+            if (VOL_IN_LIT_MEDIA) {
+                lit_after = vol_in_light_ends(ray, &styled, &panels);
+            }
             glow = vol_in_gather(glow, node, Vol_in_Chunk(vol_in_panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -3001,9 +3118,9 @@ fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
             break;
         }
         panels.lit = lit_after;
-        for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
-            panels.interiors[medium] = panels.interiors[VOL_IN_MEDIUM_SLOTS + medium];
-            panels.sources[medium] = panels.sources[VOL_IN_MEDIUM_SLOTS + medium];
+        {
+            let medium = 0u;
+            panels.starts[medium] = panels.stops[medium];
         }
     }
     return glow;
@@ -3013,77 +3130,103 @@ fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
 fn vol_in_find_panels(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f, panels: ptr<function, Vol_in_Panels>) {
     (*panels).depth = vec3f(0.0);
     (*panels).some = false;
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let own = (*comb).own[medium];
         let between = vol_in_find_walls(ray, medium, comb, node, t);
-        let next = between.next;
-        var masses = vec2f(0.0);
-        var ends = vec2u(VOL_IN_BEFORE, VOL_IN_AFTER);
-        var stretch = t;
-        (*panels).walls[medium] = between.walls;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = VOL_IN_AFTER; kind < (VOL_IN_WALL + between.count); kind++) {
-            let is_wall = kind >= VOL_IN_WALL;
-            let wall = max(kind, VOL_IN_WALL) - VOL_IN_WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var interior = Vol_in_Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-            if (is_wall || (next < 0.0)) {
-                interior = vol_in_medium_interior(medium, vol_in_ray_at(ray, distance));
+        let stretch = vol_in_panel_stretch(own, t, between);
+        let nothing = Vol_in_Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+        var start = (*panels).starts[medium];
+        var stop = Vol_in_PanelEnd(nothing, vec3f(0.0), stretch.y, between.next < 0.0);
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = vol_in_new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let distance = select(stretch.x, stretch.y, end == VOL_IN_STOP_END);
+            let interior = vol_in_medium_interior(medium, vol_in_ray_at(ray, distance));
+            if (end == VOL_IN_STOP_END) {
+                stop.interior = interior;
+                stop.source = interior.emission;
+            } else {
+                start = Vol_in_PanelEnd(interior, interior.emission, distance, false);
             }
-            (*panels).interiors[(kind * VOL_IN_MEDIUM_SLOTS) + medium] = interior;
-            let is_end = vol_in_wall_ends(own, wall);
-            ends = select(ends, select(vec2u(kind, ends.y), vec2u(ends.x, kind), is_end), is_wall);
-            stretch = select(stretch, select(vec2f(distance, stretch.y), vec2f(stretch.x, distance), is_end), is_wall);
         }
+        var masses = vec2f(0.0);
         if (vol_in_has_panel(comb, node, t, own, between)) {
-            let first = (*panels).interiors[(ends.x * VOL_IN_MEDIUM_SLOTS) + medium];
-            let last = (*panels).interiors[(ends.y * VOL_IN_MEDIUM_SLOTS) + medium];
-            let open = vol_in_open_ends(comb, node, t, own, next);
-            masses = vol_in_panel_masses((*comb).step, stretch.y - stretch.x, vec2f(first.density, last.density), open);
-            (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
+            let densities = vec2f(start.interior.density, stop.interior.density);
+            let open = vol_in_open_ends(comb, node, t, own, between.next);
+            masses = vol_in_panel_masses((*comb).step, stretch.y - stretch.x, densities, open);
+            (*panels).depth += (start.interior.extinction * masses.x) + (stop.interior.extinction * masses.y);
         }
-        (*panels).ends[medium] = ends;
+        (*panels).starts[medium] = start;
+        (*panels).stops[medium] = stop;
         (*panels).masses[medium] = masses;
         (*panels).some = (*panels).some | any(masses > vec2f(0.0));
     }
 }
 
-// Lights the ends of panels with matter; whether those at the node after are among them.
-fn vol_in_light_ends(ray: Vol_in_Ray, t: vec2f, styled: ptr<function, Vol_in_StyledRays>, panels: ptr<function, Vol_in_Panels>) -> bool {
+fn vol_in_panel_end(panels: ptr<function, Vol_in_Panels>, medium: u32, at_stop: bool) -> Vol_in_PanelEnd {
+    if (at_stop) {
+        return (*panels).stops[medium];
+    }
+    return (*panels).starts[medium];
+}
+
+// Places at which ends of panels are: the node before and the node after, which media share, then the two walls of each.
+const VOL_IN_PLACES_OF_ENDS: u32 = 2u + (2u * VOL_IN_MEDIUM_COUNT);
+const VOL_IN_NODE_BEFORE: u32 = 0u;
+const VOL_IN_NODE_AFTER: u32 = 1u;
+
+// Whether the panel of a medium has an end at a place.
+fn vol_in_is_end_at(end: Vol_in_PanelEnd, medium: u32, place: u32) -> bool {
+    return place == select(2u + (2u * medium) + (place % 2u), place % 2u, end.is_node);
+}
+
+// The first place from one on with matter and without light; PLACES_OF_ENDS if there is none.
+fn vol_in_next_dark_place(panels: ptr<function, Vol_in_Panels>, first: u32) -> u32 {
+    var next = VOL_IN_PLACES_OF_ENDS;
+    for (var place = VOL_IN_PLACES_OF_ENDS; place > 0u;) {
+        place -= 1u;
+        var dark = false;
+        {
+            let medium = 0u;
+            let there = vol_in_is_end_at(vol_in_panel_end(panels, medium, (place % 2u) == VOL_IN_STOP_END), medium, place);
+            dark = dark | (there & any((*panels).masses[medium] > vec2f(0.0)));
+        }
+        let lit = (place == VOL_IN_NODE_BEFORE) & (*panels).lit;
+        next = select(next, place, (place >= first) & (dark & !lit));
+    }
+    return next;
+}
+
+// Lights the ends of panels with matter; whether those at the node after are among them. Rays that are looked at side by side
+// each take their next place, so that all of them are done in a turn or two.
+fn vol_in_light_ends(ray: Vol_in_Ray, styled: ptr<function, Vol_in_StyledRays>, panels: ptr<function, Vol_in_Panels>) -> bool {
     var lit_after = false;
-    for (var place = 0u; place < (VOL_IN_WALL + (VOL_IN_MOST_WALLS * VOL_IN_MEDIUM_COUNT)); place++) {
-        // Media share nodes; each has walls of its own.
-        let is_wall = place >= VOL_IN_WALL;
-        let wall = (max(place, VOL_IN_WALL) - VOL_IN_WALL) % VOL_IN_MOST_WALLS;
-        let owner = (max(place, VOL_IN_WALL) - VOL_IN_WALL) / VOL_IN_MOST_WALLS;
-        let kind = select(place, VOL_IN_WALL + wall, is_wall);
-        var distance = select(t.y, t.x, kind == VOL_IN_BEFORE);
-        var wanted = false;
+    var place = vol_in_next_dark_place(panels, 0u);
+    while (place < VOL_IN_PLACES_OF_ENDS) {
+        let at_stop = (place % 2u) == VOL_IN_STOP_END;
+        var distance = 0.0;
         var scatter: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
         var source: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
-        for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
-            let ends = (*panels).ends[medium];
-            let own = !is_wall | (medium == owner);
-            let asks = own & any(ends == vec2u(kind)) & any((*panels).masses[medium] > vec2f(0.0));
-            wanted = wanted | asks;
-            scatter[medium] = vec3f(0.0);
-            source[medium] = vec3f(0.0);
-            if (!is_wall | asks) {
-                let interior = (*panels).interiors[(kind * VOL_IN_MEDIUM_SLOTS) + medium];
-                scatter[medium] = interior.scattering;
-                source[medium] = interior.emission;
-                distance = select(distance, (*panels).walls[medium][wall], is_wall);
+        {
+            let medium = 0u;
+            let end = vol_in_panel_end(panels, medium, at_stop);
+            let there = vol_in_is_end_at(end, medium, place);
+            scatter[medium] = select(vec3f(0.0), end.interior.scattering, there);
+            source[medium] = end.source;
+            distance = select(distance, end.distance, there);
+        }
+        vol_in_light_place(ray, distance, styled, &scatter, &source);
+        {
+            let medium = 0u;
+            if (at_stop) {
+                (*panels).stops[medium].source = source[medium];
+            } else {
+                (*panels).starts[medium].source = source[medium];
             }
         }
-        if (wanted & !((kind == VOL_IN_BEFORE) & (*panels).lit)) {
-            vol_in_light_place(ray, distance, styled, &scatter, &source);
-            lit_after = lit_after | (kind == VOL_IN_AFTER);
-            for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
-                if (!is_wall | (medium == owner)) {
-                    (*panels).sources[(kind * VOL_IN_MEDIUM_SLOTS) + medium] = source[medium];
-                }
-            }
-        }
+        lit_after = lit_after | (place == VOL_IN_NODE_AFTER);
+        place = vol_in_next_dark_place(panels, place + 1u);
     }
     return lit_after;
 }
@@ -3102,13 +3245,11 @@ fn vol_in_panel_sent(masses: vec2f, start: vec3f, end: vec3f, depth: vec3f) -> v
 fn vol_in_panels_sent(panels: ptr<function, Vol_in_Panels>) -> vec3f {
     let depth = (*panels).depth;
     var sent = vec3f(0.0);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let masses = (*panels).masses[medium];
         if (any(masses > vec2f(0.0))) {
-            let ends = (*panels).ends[medium];
-            let start = (*panels).sources[(ends.x * VOL_IN_MEDIUM_SLOTS) + medium];
-            let end = (*panels).sources[(ends.y * VOL_IN_MEDIUM_SLOTS) + medium];
-            sent += vol_in_panel_sent(masses, start, end, depth);
+            sent += vol_in_panel_sent(masses, (*panels).starts[medium].source, (*panels).stops[medium].source, depth);
         }
     }
     return sent;
@@ -3150,7 +3291,7 @@ fn vol_in_march_nodes(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     var styled = vol_in_style_rays(ray, end);
     var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
     var weights: array<f32, VOL_IN_MEDIUM_SLOTS>;
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
         if (vol_in_weigh(ray, &comb, node, &weights)) {
             glow = vol_in_gather(glow, node, vol_in_node_chunk(ray, vol_in_node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
@@ -3179,7 +3320,8 @@ fn vol_in_node_chunk(
     var depth = vec3f(0.0);
     var scatter: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
     var source: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let weight = (*weights)[medium];
         scatter[medium] = vec3f(0.0);
         source[medium] = vec3f(0.0);
@@ -3191,10 +3333,13 @@ fn vol_in_node_chunk(
             source[medium] = interior.emission * mass;
         }
     }
-    vol_in_light_place(ray, t, styled, &scatter, &source);
+    if (VOL_IN_LIT_MEDIA) {
+        vol_in_light_place(ray, t, styled, &scatter, &source);
+    }
     // Add up what they send.
     var sent = vec3f(0.0);
-    for (var medium = 0u; medium < VOL_IN_MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         sent += source[medium] * vol_in_mean_decay3(depth);
     }
     return Vol_in_Chunk(sent, depth);

@@ -7,7 +7,7 @@
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_frame        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_input        f32: cells around media, depths of the grids of lights
+//   4 vol_input        f32: depths of the grids of lights, tables of styles
 //   5 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
@@ -17,14 +17,16 @@
 
 @group(0) @binding(0) var<uniform> vol_uniforms: array<vec4<f32>, 8>;
 fn vol_uniform_word(index: u32) -> f32 { return vol_uniforms[index >> 2u][index & 3u]; }
-@group(0) @binding(1) var<uniform> vol_curves: array<vec4<f32>, 39>;
+@group(0) @binding(1) var<uniform> vol_curves: array<vec4<f32>, 45>;
 fn vol_curve_word(index: u32) -> f32 { return vol_curves[index >> 2u][index & 3u]; }
 @group(0) @binding(2) var<uniform> vol_permutation: array<vec4<u32>, 64>;
 fn vol_permutation_word(index: u32) -> u32 { return vol_permutation[index >> 2u][index & 3u]; }
-@group(0) @binding(3) var<uniform> vol_frame: array<vec4<f32>, 19>;
+@group(0) @binding(3) var<uniform> vol_frame: array<vec4<f32>, 115>;
 fn vol_frame_word(index: u32) -> f32 { return vol_frame[index >> 2u][index & 3u]; }
 @group(0) @binding(4) var<storage, read> vol_input: array<f32>;
 fn vol_input_word(index: u32) -> f32 { return vol_input[index]; }
+
+const VOL_CURVES: u32 = 1u;
 
 // Elementary functions in f32, the same text as `runtime-cpu/src/math/fun.rs`, where ranges,
 // errors and sources stand. Needs nothing else from the module.
@@ -439,10 +441,10 @@ fn vol_fbm_gradient(p: vec3f, octaves: f32, lacunarity: f32, gain: f32, seed: u3
 }
 
 // Closest point on a curve of canonical pieces in f32, the same text as
-// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl` and
-// `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
+// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl`, the number of curves
+// VOL_CURVES and `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
 
-const VOL_PIECE_WORDS: u32 = 52u;
+const VOL_PIECE_WORDS: u32 = 60u;
 // Below this a divisor counts as it: quotients stay finite.
 const VOL_TINY: f32 = 1e-30;
 // Distance to a curve without pieces, scene units.
@@ -451,6 +453,12 @@ const VOL_FAR: f32 = 1e18;
 const VOL_REACH: f32 = 1e8;
 // Largest stretch reported.
 const VOL_STRETCH: f32 = 1e6;
+
+// By how much a squared distance is taken larger before boxes are compared with it: more than the kernels are off far from
+// the curve.
+const VOL_LOOSE: f32 = 1.00001;
+// What they are off near it, over the length of the curve, several times.
+const VOL_SLACK: f32 = 4e-6;
 
 // A foot at an end is held there if its offset leans along the tangent by more than this share.
 const VOL_LEAN: f32 = 1e-3;
@@ -744,19 +752,55 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
     );
 }
 
-// Where a curve is: pieces `first .. first + count` of the buffer.
+// Where a curve is: pieces `first .. first + count` of the buffer; `number` among all curves.
 struct VolCurve {
     first: u32,
     count: u32,
+    number: u32,
 }
 
-// The closest point of a curve, from `vol_held_point`. Every point visits the same piece at the same time.
+// The last search on a curve, from which the next one is most often near.
+struct VolLastSearch {
+    some: bool,
+    point: vec3f,
+    found: VolSearch,
+    // Distance of the foot at most.
+    reach: f32,
+}
+
+var<private> vol_last_search: array<VolLastSearch, VOL_CURVES>;
+
+// Squared distance from a point to the box around a piece; 0 inside.
+fn vol_box_dist_sq(p: vec3f, word: u32) -> f32 {
+    let below = vol_curve_vector(word + 52u) - p;
+    let above = p - vol_curve_vector(word + 55u);
+    let x = max(max(below.x, above.x), 0.0);
+    let y = max(max(below.y, above.y), 0.0);
+    let z = max(max(below.z, above.z), 0.0);
+    return ((x * x) + (y * y)) + (z * z);
+}
+
+// The closest point of a curve, from `vol_held_point`, as if every piece were visited: one that is passed over is in a box
+// farther away than the winner can be. That is at most as far away as the last foot, which the point has moved away from.
 fn vol_search(p: vec3f, curve: VolCurve) -> VolSearch {
-    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
-    // Visit the pieces along the curve.
-    for (var index = 0u; index < curve.count; index = index + 1u) {
-        search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
+    let last = vol_last_search[curve.number];
+    if (last.some & all(last.point == p)) {
+        return last.found;
     }
+    let way = p - last.point;
+    let reach = last.reach + sqrt(vol_dot(way, way));
+    var bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
+    // Visit the pieces along the curve.
+    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
+    for (var index = 0u; index < curve.count; index = index + 1u) {
+        let word = (curve.first + index) * VOL_PIECE_WORDS;
+        if (vol_box_dist_sq(p, word) <= bound) {
+            search = vol_visit(search, p, word, index);
+            bound = min(bound, search.dist_sq * VOL_LOOSE);
+        }
+    }
+    let slack = VOL_SLACK * vol_curve_word((curve.first * VOL_PIECE_WORDS) + 39u);
+    vol_last_search[curve.number] = VolLastSearch(true, p, search, sqrt(search.dist_sq) + slack);
     return search;
 }
 
@@ -828,7 +872,7 @@ fn vol_f2_region_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v9: f32 = vol_uniforms[3].w;
   let v10: f32 = vol_uniforms[3].z;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v12 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y)));
+  let v12 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y), 0u));
   let v13: f32 = v12.t;
   let v14: f32 = v12.arc_length;
   let v15: f32 = v12.curve_length;
@@ -872,7 +916,7 @@ fn vol_f3_interior_cloud(x0: f32, x1: f32, x2: f32) -> VolOut10 {
   let v4: f32 = 0.52f;
   let v8: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v9 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y)));
+  let v9 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y), 0u));
   let v10: f32 = v9.t;
   let v11: f32 = v9.arc_length;
   let v12: f32 = v9.x;
@@ -929,7 +973,7 @@ fn vol_f4_extinction_cloud(x0: f32, x1: f32, x2: f32) -> vec4f {
   let v2: f32 = 0.52f;
   let v6: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v7 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y)));
+  let v7 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y), 0u));
   let v8: f32 = v7.t;
   let v9: f32 = v7.arc_length;
   let v10: f32 = v7.x;
@@ -1018,7 +1062,7 @@ fn vol_f7_density_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v11: f32 = vol_uniforms[3].z;
   let v13: f32 = 25.0f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v14 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y)));
+  let v14 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y), 0u));
   let v15: f32 = v14.t;
   let v16: f32 = v14.arc_length;
   let v17: f32 = v14.curve_length;
@@ -1102,7 +1146,7 @@ fn vol_f9_local_cloud(x0: f32, x1: f32, x2: f32) -> vec3f {
   let v0: f32 = 0.08f;
   let v1: f32 = 0.52f;
   // tornado.vol:9: density: q => 25 * max(0, fbm(q.local * vec3(3, 6, 3) - (0, time, 0), octaves) + 0.15)
-  let v5 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y)));
+  let v5 = vol_closest(vec3f(x0, x1, x2), VolCurve(bitcast<u32>(vol_uniforms[7].x), bitcast<u32>(vol_uniforms[7].y), 0u));
   let v6: f32 = v5.t;
   let v7: f32 = v5.arc_length;
   let v8: f32 = v5.x;
@@ -1156,17 +1200,20 @@ const MEDIUM_SLOTS: u32 = 1u;
 const LIGHT_SLOTS: u32 = 1u;
 const TRANSFER_SIZE: u32 = 256u;
 const OBJECT_WORDS: u32 = 8u;
-const MEDIUM_WORDS: u32 = 9u;
+const MEDIUM_WORDS: u32 = 8u;
 const CELL_WORDS: u32 = 6u;
+const CELLS_WORDS: u32 = 384u;
 const LIGHT_WORDS: u32 = 12u;
 const PIXEL_WORDS: u32 = 15u;
 const AT_OBJECTS: u32 = 27u;
 const AT_MEDIA: u32 = 27u;
-const AT_LIGHTS: u32 = 36u;
+const AT_LIGHTS: u32 = 35u;
+const AT_CELLS: u32 = 75u;
 const CORRECTED: bool = true;
 const SOFT_LIGHTS: bool = false;
 const OCCLUDING_LIGHTS: bool = false;
 const LIGHT_GRIDS: bool = true;
+const LIT_MEDIA: bool = true;
 const STYLES: bool = false;
 const MARCHED_SHAFTS: bool = false;
 
@@ -2003,7 +2050,7 @@ fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
     var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
         // Optical depth of each node, all media together.
         if (weigh(ray, &comb, node, &weights)) {
             depth += node_depth(ray_at(ray, node_distance(node, comb.step, comb.offset)), &weights);
@@ -2018,7 +2065,8 @@ fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
 
 fn node_depth(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> vec3f {
     var depth = vec3f(0.0);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let weight = (*weights)[medium];
         if (weight > 0.0) {
             let matter = medium_extinction(medium, point);
@@ -2033,8 +2081,8 @@ fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
     // Density and extinction of each medium at the node before.
     var before: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
         // Optical depth of each panel, all media together.
         depth += panel_depth(ray, &comb, node, &before);
         // Go on while the ray is not dark yet.
@@ -2049,35 +2097,24 @@ fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<funct
     let step_size = (*comb).step;
     let t = vec2f(panel_node(comb, node), panel_node(comb, node + 1));
     var depth = vec3f(0.0);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let own = (*comb).own[medium];
         let between = find_walls(ray, medium, comb, node, t);
-        let next = between.next;
+        let stretch = panel_stretch(own, t, between);
         var first = (*before)[medium];
         var last = vec4f(0.0);
-        var stretch = t;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
-            let is_wall = kind >= WALL;
-            let wall = max(kind, WALL) - WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var matter = vec4f(0.0);
-            if (is_wall || (next < 0.0)) {
-                matter = medium_extinction(medium, ray_at(ray, distance));
-            }
-            if (!is_wall) {
-                (*before)[medium] = matter;
-                last = matter;
-            } else if (wall_ends(own, wall)) {
-                last = matter;
-                stretch.y = distance;
-            } else {
-                first = matter;
-                stretch.x = distance;
-            }
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let at_stop = end == STOP_END;
+            let matter = medium_extinction(medium, ray_at(ray, select(stretch.x, stretch.y, at_stop)));
+            first = select(matter, first, at_stop);
+            last = select(last, matter, at_stop);
         }
+        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
         if (has_panel(comb, node, t, own, between)) {
-            let open = open_ends(comb, node, t, own, next);
+            let open = open_ends(comb, node, t, own, between.next);
             let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }
@@ -2411,6 +2448,9 @@ fn distance_above(
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
+// After the last node.
+const NO_NODE: i32 = 0x7fffffff;
+
 struct Comb {
     step: f32,
     // Where node 0 is, in steps.
@@ -2419,11 +2459,18 @@ struct Comb {
     // Nodes that may be inside some medium.
     first: i32,
     last: i32,
-    // The same for each medium.
-    ranges: array<vec2i, MEDIUM_SLOTS>,
+    // The same for each medium, and of those this run or the next one.
+    all: array<Runs, MEDIUM_SLOTS>,
+    runs: array<vec2i, MEDIUM_SLOTS>,
     // Signed distances of each medium at the node before and at the next one.
     before: array<f32, MEDIUM_SLOTS>,
     own: array<f32, MEDIUM_SLOTS>,
+}
+
+// First and last nodes of up to four runs, in any order; NO_NODE is the first of none.
+struct Runs {
+    first: vec4i,
+    last: vec4i,
 }
 
 // Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -2439,76 +2486,124 @@ fn medium_word(medium: u32) -> u32 {
     return AT_MEDIA + (MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-// inside are in the range or next to it, and so are the panels on both sides.
-fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> vec2i {
-    let at = medium_word(medium);
+// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
+// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2i {
+    let step_size = (*comb).step;
     let reach = vec3f(1.01 * step_size);
-    let span = slab(ray, word3(at + 1u) - reach, word3(at + 4u) + reach);
-    let leave = min(span.leave, end);
+    let span = slab(ray, lo - reach, hi + reach);
+    let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
-    let first = min(max(floor((span.entry / step_size) - offset), 0.0), LAST_NODE);
-    let last = min(floor((max(leave, 0.0) / step_size) - offset), LAST_NODE);
-    let none = (span.entry > leave) | (vol_frame_word(at) == 0.0);
-    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
-}
-
-// Smallest range that holds both.
-fn range_union(a: vec2i, b: vec2i) -> vec2i {
-    let both = vec2i(min(a.x, b.x), max(a.y, b.y));
-    return select(select(both, a, b.x > b.y), b, a.x > a.y);
+    let first = min(max(floor((span.entry / step_size) - (*comb).offset), 0.0), LAST_NODE);
+    let last = min(floor((max(leave, 0.0) / step_size) - (*comb).offset), LAST_NODE);
+    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), span.entry > leave);
 }
 
 // Lays out the nodes of the ray up to its end.
 fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
+    comb.offset = first_node(ray.shift);
     comb.end = end;
-    let offset = first_node(ray.shift);
-    comb.offset = offset;
-    var whole = vec2i(0, -1);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let range = node_range(ray, medium, step_size, offset, end);
-        comb.ranges[medium] = range;
-        whole = range_union(whole, range);
-    }
-    comb.first = whole.x;
-    comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    comb.first = NO_NODE;
+    comb.last = -1;
+    {
+        let medium = 0u;
+        let runs = find_runs(ray, medium, &comb);
+        comb.all[medium] = runs;
+        comb.runs[medium] = run_from(runs, 0);
+        comb.first = min(comb.first, comb.runs[medium].x);
+        comb.last = max(comb.last, max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w)));
         comb.before[medium] = FAR;
         comb.own[medium] = FAR;
     }
+    comb.last = min(comb.last, min(comb.first, NO_NODE - MAX_NODES) + (MAX_NODES - 1));
     return comb;
 }
 
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn wall(ray: Ray, medium: u32, range: vec2i, t: f32, node: i32, step_size: f32, end: f32) -> f32 {
-    var region = FAR;
-    let some = range.x <= range.y;
-    if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
-        let point = ray_at(ray, t);
-        // What is not within a step of a cell is outside, and so are its neighbours.
-        if (near_cell(medium, point, step_size)) {
-            region = medium_region(medium, point);
-        }
-    }
-    return max(region, max(t - end, -t));
-}
-
-// Whether a point is within a step of a cell of a medium; a medium without cells may be anywhere.
-fn near_cell(medium: u32, point: vec3f, step_size: f32) -> bool {
+// Finds the runs of nodes that may be inside a medium: where the ray passes through cells, or anywhere in the box of a
+// medium without cells.
+fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     let at = medium_word(medium);
-    let count = u32(vol_frame_word(at + 8u));
-    let reach = vec3f(1.01 * step_size);
-    var near = count == 0u;
-    var cell = u32(vol_frame_word(at + 7u));
+    var runs = Runs(vec4i(NO_NODE), vec4i(-1));
+    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), comb);
+    if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
+        return runs;
+    }
+    let count = u32(vol_frame_word(at + 7u));
+    if (count == 0u) {
+        return add_run(runs, whole);
+    }
+    var cell = AT_CELLS + (CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let lo = input3(cell) - reach;
-        let hi = input3(cell + 3u) + reach;
-        near = near | contains(lo, hi, point);
+        let range = node_range(ray, word3(cell), word3(cell + 3u), comb);
+        if (range.x <= range.y) {
+            runs = add_run(runs, range);
+        }
         cell += CELL_WORDS;
     }
-    return near;
+    return runs;
+}
+
+// Adds nodes to those that they continue, else as a run of their own; where there are four, to one of them.
+fn add_run(before: Runs, range: vec2i) -> Runs {
+    // A node beside each run is looked at as well.
+    let continued = (before.first <= vec4i(range.y + 2)) & (before.last >= vec4i(range.x - 2));
+    let own_first = select(vec4i(NO_NODE), before.first, continued);
+    let own_last = select(vec4i(-1), before.last, continued);
+    let first = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    let last = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    let kept_first = select(before.first, vec4i(NO_NODE), continued);
+    let kept_last = select(before.last, vec4i(-1), continued);
+    let free = kept_first == vec4i(NO_NODE);
+    let place = vec4<bool>(
+        free.x,
+        free.y & !free.x,
+        free.z & !(free.x | free.y),
+        !(free.x | free.y | free.z),
+    );
+    return Runs(
+        select(kept_first, min(kept_first, vec4i(first)), place),
+        select(kept_last, max(kept_last, vec4i(last)), place),
+    );
+}
+
+// The nodes of a run from one on: of the first that does not end before it.
+fn run_from(runs: Runs, node: i32) -> vec2i {
+    let first = select(vec4i(NO_NODE), max(runs.first, vec4i(node)), runs.last >= vec4i(node));
+    let least = min(min(first.x, first.y), min(first.z, first.w));
+    let last = select(vec4i(node), runs.last, first == vec4i(least));
+    return vec2i(least, max(max(last.x, last.y), max(last.z, last.w)));
+}
+
+// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
+fn next_node(comb: ptr<function, Comb>, node: i32, lead: i32) -> i32 {
+    let after = node + 1;
+    var first = NO_NODE;
+    {
+        let medium = 0u;
+        if ((*comb).runs[medium].y < after) {
+            (*comb).runs[medium] = run_from((*comb).all[medium], after);
+        }
+        first = min(first, (*comb).runs[medium].x);
+    }
+    let next = max(after, first - lead);
+    // Distances say nothing about nodes farther on.
+    {
+        let medium = 0u;
+        (*comb).before[medium] = select((*comb).before[medium], FAR, next > after);
+        (*comb).own[medium] = select((*comb).own[medium], FAR, next > after);
+    }
+    return next;
+}
+
+// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
+fn wall(ray: Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
+    var region = FAR;
+    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
+        region = medium_region(medium, ray_at(ray, t));
+    }
+    return max(region, max(t - end, -t));
 }
 
 // Part of the interval between two neighbouring nodes that the first stands for, given the signed
@@ -2520,16 +2615,17 @@ fn share(own: f32, other: f32, step_size: f32) -> f32 {
 }
 
 // The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before the first one: so that regions are asked at one place of the text,
+// come in order, from two before each run: so that regions are asked at one place of the text,
 // since drivers write them out at each.
 fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
     var any_inside = false;
     let step_size = (*comb).step;
     let t = node_distance(node + 1, step_size, (*comb).offset);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let before = (*comb).before[medium];
         let own = (*comb).own[medium];
-        let after = wall(ray, medium, (*comb).ranges[medium], t, node + 1, step_size, (*comb).end);
+        let after = wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
         let weight = share(own, before, step_size) + share(own, after, step_size);
         let is_inside = (own < 0.0) & (node >= (*comb).first);
         (*weights)[medium] = select(0.0, weight, is_inside);
@@ -2626,7 +2722,7 @@ const NO_MORE: u32 = 3u;
 struct Between {
     // Signed distance at the node after.
     next: f32,
-    // Walls, of which there are none, one, or two around a chord.
+    // The first and the last wall: there are none, one, or two around a chord.
     walls: vec2f,
     count: u32,
 }
@@ -2635,8 +2731,8 @@ struct Between {
 // the text, since drivers write it out at each.
 fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: vec2f) -> Between {
     let own = (*comb).own[medium];
-    let range = (*comb).ranges[medium];
-    let known = (range.x <= range.y) & ((node + 1) >= range.x) & (node <= range.y);
+    let run = (*comb).runs[medium];
+    let known = ((node + 1) >= run.x) & (node <= run.y);
     var between = Between(FAR, vec2f(0.0), 0u);
     var gap: Gap;
     var crossing: Crossing;
@@ -2654,7 +2750,7 @@ fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: ve
         }
         let point = ray_at(ray, probe);
         var value = FAR;
-        if ((aim != THE_NODE) || (known && near_cell(medium, point, (*comb).step))) {
+        if ((aim != THE_NODE) || known) {
             value = medium_region(medium, point);
         }
         let found = vec2f(probe, value);
@@ -2690,7 +2786,8 @@ fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: ve
         } else {
             crossing = crossing_narrowed(crossing, found);
             if (round == WALL_ROUNDS) {
-                between.walls[between.count] = crossing_probe(crossing);
+                let wall = crossing_probe(crossing);
+                between.walls = select(vec2f(between.walls.x, wall), vec2f(wall), between.count == 0u);
                 between.count += 1u;
                 crossing = other;
                 aim = select(NO_MORE, A_WALL, between.count < wanted);
@@ -2708,9 +2805,21 @@ fn has_panel(comb: ptr<function, Comb>, node: i32, t: vec2f, own: f32, between: 
     return (node >= (*comb).first) & (t.x < t.y) & some;
 }
 
-// Whether a wall is where its panel ends: the first one after a node inside, the second one otherwise.
-fn wall_ends(own: f32, wall: u32) -> bool {
-    return (own < 0.0) | (wall == 1u);
+// The two ends of a panel: where it begins, and where it stops.
+const START_END: u32 = 0u;
+const STOP_END: u32 = 1u;
+
+// Distances of the ends of a panel between two nodes: those inside, else walls.
+fn panel_stretch(own: f32, t: vec2f, between: Between) -> vec2f {
+    return select(between.walls, t, vec2<bool>(own < 0.0, between.next < 0.0));
+}
+
+// From which of the ends on, and before which, the medium has yet to be sampled: at a node inside that a panel begins with
+// it has been.
+fn new_ends(own: f32, between: Between) -> vec2u {
+    let has_walls = between.count > 0u;
+    let first = select(STOP_END, START_END, (own >= 0.0) & has_walls);
+    return vec2u(first, select(STOP_END, STOP_END + 1u, (between.next < 0.0) | has_walls));
 }
 
 // Integral of the positive part of a density over a stretch of a panel as long as a step, by its values at
@@ -2768,7 +2877,8 @@ fn place_visibility(
     scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
 ) -> vec3f {
     var asked = false;
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let scatters = any((*scatter)[medium] > vec3f(0.0));
         asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
     }
@@ -2795,7 +2905,8 @@ fn scatter_light(
     source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
 ) {
     let angles = turn(lamp.direction, direction);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let lighting = vol_frame_word(medium_word(medium));
         let part = (*scatter)[medium];
         if (any(part > vec3f(0.0)) & (lighting > UNLIT)) {
@@ -2818,25 +2929,23 @@ fn turn(toward: vec3f, direction: vec3f) -> vec2f {
 // What media along a ray add and take away, by panel.wgsl.
 // Twin: runtime-cpu/src/render/corrected.rs, which says why.
 
-// Ends of panels: the node before, the node after, the walls between them.
-const BEFORE: u32 = 0u;
-const AFTER: u32 = 1u;
-const WALL: u32 = 2u;
-const MOST_WALLS: u32 = 2u;
 const THIN: f32 = 0.125;
 const THICK: f32 = 0.5;
-const END_SLOTS: u32 = (WALL + MOST_WALLS) * MEDIUM_SLOTS;
 
-// The panels between two nodes.
+// Where a panel of a medium begins or stops.
+struct PanelEnd {
+    interior: Interior,
+    // Light sent towards the eye, per unit of density.
+    source: vec3f,
+    distance: f32,
+    // Whether it is a node; else it is a wall.
+    is_node: bool,
+}
+
+// The panels between two nodes, one for each medium.
 struct Panels {
-    // Each medium at each kind of end.
-    interiors: array<Interior, END_SLOTS>,
-    // Light sent towards the eye there, per unit of density.
-    sources: array<vec3f, END_SLOTS>,
-    // Distances of the walls.
-    walls: array<vec2f, MEDIUM_SLOTS>,
-    // Kinds of the two ends of each medium's panel.
-    ends: array<vec2u, MEDIUM_SLOTS>,
+    starts: array<PanelEnd, MEDIUM_SLOTS>,
+    stops: array<PanelEnd, MEDIUM_SLOTS>,
     // Integral of the density that each end stands for.
     masses: array<vec2f, MEDIUM_SLOTS>,
     depth: vec3f,
@@ -2850,14 +2959,15 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
     var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var panels: Panels;
-    panels.lit = false;
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = light_ends(ray, t, &styled, &panels);
+            if (LIT_MEDIA) {
+                lit_after = light_ends(ray, &styled, &panels);
+            }
             glow = gather(glow, node, Chunk(panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -2865,9 +2975,9 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
             break;
         }
         panels.lit = lit_after;
-        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-            panels.interiors[medium] = panels.interiors[MEDIUM_SLOTS + medium];
-            panels.sources[medium] = panels.sources[MEDIUM_SLOTS + medium];
+        {
+            let medium = 0u;
+            panels.starts[medium] = panels.stops[medium];
         }
     }
     return glow;
@@ -2877,77 +2987,103 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
 fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels: ptr<function, Panels>) {
     (*panels).depth = vec3f(0.0);
     (*panels).some = false;
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let own = (*comb).own[medium];
         let between = find_walls(ray, medium, comb, node, t);
-        let next = between.next;
-        var masses = vec2f(0.0);
-        var ends = vec2u(BEFORE, AFTER);
-        var stretch = t;
-        (*panels).walls[medium] = between.walls;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
-            let is_wall = kind >= WALL;
-            let wall = max(kind, WALL) - WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var interior = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-            if (is_wall || (next < 0.0)) {
-                interior = medium_interior(medium, ray_at(ray, distance));
+        let stretch = panel_stretch(own, t, between);
+        let nothing = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+        var start = (*panels).starts[medium];
+        var stop = PanelEnd(nothing, vec3f(0.0), stretch.y, between.next < 0.0);
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let distance = select(stretch.x, stretch.y, end == STOP_END);
+            let interior = medium_interior(medium, ray_at(ray, distance));
+            if (end == STOP_END) {
+                stop.interior = interior;
+                stop.source = interior.emission;
+            } else {
+                start = PanelEnd(interior, interior.emission, distance, false);
             }
-            (*panels).interiors[(kind * MEDIUM_SLOTS) + medium] = interior;
-            let is_end = wall_ends(own, wall);
-            ends = select(ends, select(vec2u(kind, ends.y), vec2u(ends.x, kind), is_end), is_wall);
-            stretch = select(stretch, select(vec2f(distance, stretch.y), vec2f(stretch.x, distance), is_end), is_wall);
         }
+        var masses = vec2f(0.0);
         if (has_panel(comb, node, t, own, between)) {
-            let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
-            let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
-            let open = open_ends(comb, node, t, own, next);
-            masses = panel_masses((*comb).step, stretch.y - stretch.x, vec2f(first.density, last.density), open);
-            (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
+            let densities = vec2f(start.interior.density, stop.interior.density);
+            let open = open_ends(comb, node, t, own, between.next);
+            masses = panel_masses((*comb).step, stretch.y - stretch.x, densities, open);
+            (*panels).depth += (start.interior.extinction * masses.x) + (stop.interior.extinction * masses.y);
         }
-        (*panels).ends[medium] = ends;
+        (*panels).starts[medium] = start;
+        (*panels).stops[medium] = stop;
         (*panels).masses[medium] = masses;
         (*panels).some = (*panels).some | any(masses > vec2f(0.0));
     }
 }
 
-// Lights the ends of panels with matter; whether those at the node after are among them.
-fn light_ends(ray: Ray, t: vec2f, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
+fn panel_end(panels: ptr<function, Panels>, medium: u32, at_stop: bool) -> PanelEnd {
+    if (at_stop) {
+        return (*panels).stops[medium];
+    }
+    return (*panels).starts[medium];
+}
+
+// Places at which ends of panels are: the node before and the node after, which media share, then the two walls of each.
+const PLACES_OF_ENDS: u32 = 2u + (2u * MEDIUM_COUNT);
+const NODE_BEFORE: u32 = 0u;
+const NODE_AFTER: u32 = 1u;
+
+// Whether the panel of a medium has an end at a place.
+fn is_end_at(end: PanelEnd, medium: u32, place: u32) -> bool {
+    return place == select(2u + (2u * medium) + (place % 2u), place % 2u, end.is_node);
+}
+
+// The first place from one on with matter and without light; PLACES_OF_ENDS if there is none.
+fn next_dark_place(panels: ptr<function, Panels>, first: u32) -> u32 {
+    var next = PLACES_OF_ENDS;
+    for (var place = PLACES_OF_ENDS; place > 0u;) {
+        place -= 1u;
+        var dark = false;
+        {
+            let medium = 0u;
+            let there = is_end_at(panel_end(panels, medium, (place % 2u) == STOP_END), medium, place);
+            dark = dark | (there & any((*panels).masses[medium] > vec2f(0.0)));
+        }
+        let lit = (place == NODE_BEFORE) & (*panels).lit;
+        next = select(next, place, (place >= first) & (dark & !lit));
+    }
+    return next;
+}
+
+// Lights the ends of panels with matter; whether those at the node after are among them. Rays that are looked at side by side
+// each take their next place, so that all of them are done in a turn or two.
+fn light_ends(ray: Ray, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
     var lit_after = false;
-    for (var place = 0u; place < (WALL + (MOST_WALLS * MEDIUM_COUNT)); place++) {
-        // Media share nodes; each has walls of its own.
-        let is_wall = place >= WALL;
-        let wall = (max(place, WALL) - WALL) % MOST_WALLS;
-        let owner = (max(place, WALL) - WALL) / MOST_WALLS;
-        let kind = select(place, WALL + wall, is_wall);
-        var distance = select(t.y, t.x, kind == BEFORE);
-        var wanted = false;
+    var place = next_dark_place(panels, 0u);
+    while (place < PLACES_OF_ENDS) {
+        let at_stop = (place % 2u) == STOP_END;
+        var distance = 0.0;
         var scatter: array<vec3f, MEDIUM_SLOTS>;
         var source: array<vec3f, MEDIUM_SLOTS>;
-        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-            let ends = (*panels).ends[medium];
-            let own = !is_wall | (medium == owner);
-            let asks = own & any(ends == vec2u(kind)) & any((*panels).masses[medium] > vec2f(0.0));
-            wanted = wanted | asks;
-            scatter[medium] = vec3f(0.0);
-            source[medium] = vec3f(0.0);
-            if (!is_wall | asks) {
-                let interior = (*panels).interiors[(kind * MEDIUM_SLOTS) + medium];
-                scatter[medium] = interior.scattering;
-                source[medium] = interior.emission;
-                distance = select(distance, (*panels).walls[medium][wall], is_wall);
+        {
+            let medium = 0u;
+            let end = panel_end(panels, medium, at_stop);
+            let there = is_end_at(end, medium, place);
+            scatter[medium] = select(vec3f(0.0), end.interior.scattering, there);
+            source[medium] = end.source;
+            distance = select(distance, end.distance, there);
+        }
+        light_place(ray, distance, styled, &scatter, &source);
+        {
+            let medium = 0u;
+            if (at_stop) {
+                (*panels).stops[medium].source = source[medium];
+            } else {
+                (*panels).starts[medium].source = source[medium];
             }
         }
-        if (wanted & !((kind == BEFORE) & (*panels).lit)) {
-            light_place(ray, distance, styled, &scatter, &source);
-            lit_after = lit_after | (kind == AFTER);
-            for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-                if (!is_wall | (medium == owner)) {
-                    (*panels).sources[(kind * MEDIUM_SLOTS) + medium] = source[medium];
-                }
-            }
-        }
+        lit_after = lit_after | (place == NODE_AFTER);
+        place = next_dark_place(panels, place + 1u);
     }
     return lit_after;
 }
@@ -2966,13 +3102,11 @@ fn panel_sent(masses: vec2f, start: vec3f, end: vec3f, depth: vec3f) -> vec3f {
 fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
     let depth = (*panels).depth;
     var sent = vec3f(0.0);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let masses = (*panels).masses[medium];
         if (any(masses > vec2f(0.0))) {
-            let ends = (*panels).ends[medium];
-            let start = (*panels).sources[(ends.x * MEDIUM_SLOTS) + medium];
-            let end = (*panels).sources[(ends.y * MEDIUM_SLOTS) + medium];
-            sent += panel_sent(masses, start, end, depth);
+            sent += panel_sent(masses, (*panels).starts[medium].source, (*panels).stops[medium].source, depth);
         }
     }
     return sent;
@@ -3014,7 +3148,7 @@ fn march_nodes(ray: Ray, end: f32) -> Glow {
     var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
         if (weigh(ray, &comb, node, &weights)) {
             glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
@@ -3043,7 +3177,8 @@ fn node_chunk(
     var depth = vec3f(0.0);
     var scatter: array<vec3f, MEDIUM_SLOTS>;
     var source: array<vec3f, MEDIUM_SLOTS>;
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         let weight = (*weights)[medium];
         scatter[medium] = vec3f(0.0);
         source[medium] = vec3f(0.0);
@@ -3055,10 +3190,13 @@ fn node_chunk(
             source[medium] = interior.emission * mass;
         }
     }
-    light_place(ray, t, styled, &scatter, &source);
+    if (LIT_MEDIA) {
+        light_place(ray, t, styled, &scatter, &source);
+    }
     // Add up what they send.
     var sent = vec3f(0.0);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+    {
+        let medium = 0u;
         sent += source[medium] * mean_decay3(depth);
     }
     return Chunk(sent, depth);

@@ -5,7 +5,7 @@ use crate::differential::{function_of, on_cpu, on_gpu, operands};
 use crate::generated::{compiled, scenes};
 use crate::gpu_device::strict_trial;
 use crate::support::{
-    FIRST, Random, compile_file, ensure, examples, frame, frame_at, point, program_of, render,
+    FIRST, Random, compile, compile_file, ensure, examples, frame, frame_at, point, program_of, render,
 };
 use libtest_mimic::{Failed, Trial};
 use std::sync::atomic::AtomicBool;
@@ -53,6 +53,7 @@ pub(crate) fn trials() -> Vec<Trial> {
             same_pictures(gpu, &program, &frame(&program, 0.4, [48, 27])?)
         }));
     }
+    trials.push(strict_trial("strict::picture_of_a_coil", coil));
     trials.extend((0..PARTS).map(|part| {
         strict_trial(&format!("strict::random_scenes_{part}"), move |gpu| random_scenes(gpu, part))
     }));
@@ -135,6 +136,26 @@ fn same_fields(gpu: &Gpu, program: &Program, frame: &Frame, count: usize) -> Res
 fn first_difference(a: &[f32], b: &[f32]) -> Option<usize> {
     let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
     a.iter().zip(b).position(|(&a, &b)| !same(a, b))
+}
+
+/// A wide coil seen along its axis, so that rays leave it and enter it again more often than they remember runs, alone in the
+/// light and as one of five media without.
+fn coil(gpu: &Gpu) -> Result<(), Failed> {
+    let hazes: String = (0..4)
+        .map(|i| {
+            format!("medium haze{i} {{ region: sphere(0.3).translate(({i} / 2 - 0.7, 0, -1)), emit: 1 }}\n")
+        })
+        .collect();
+    for others in ["light sun { from: (0.02, 1, 0.04) }\n", &hazes] {
+        let text = format!(
+            "medium wire {{ region: tube(helix(0.8, 14, 7), radius: t => 0.12), \
+             density: q => 3 + q.t, absorb: 0.1, scatter: 0.3, emit: 0.1 }}\n{others}\
+             camera {{ from: (0.5, 24, 0.3), at: (0.5, 0, 0.35), fov: 5deg }}\n"
+        );
+        let program = compile("coil", &text)?;
+        same_pictures(gpu, &program, &frame(&program, 0.0, [48, 27])?)?;
+    }
+    Ok(())
 }
 
 /// Pictures by both quadratures, with few samples and with many of which pixels take some.

@@ -53,7 +53,7 @@ fn append(pieces: &[Piece], first: usize, nodes: &mut Vec<Node>) -> usize {
     let end = (first + pieces.len()) as u32;
     nodes.push(Node { lo: [0.0; 3], hi: [0.0; 3], skip: 0, first: first as u32, end });
     let (lo, hi) = if pieces.len() <= LEAF {
-        pieces.iter().map(around).reduce(joined).expect("a leaf has pieces")
+        pieces.iter().map(|piece| (piece.lo, piece.hi)).reduce(joined).expect("a leaf has pieces")
     } else {
         let (front, back) = pieces.split_at(pieces.len() / 2);
         let children = [append(front, first, nodes), append(back, first + front.len(), nodes)];
@@ -72,7 +72,7 @@ fn joined(a: Corners, b: Corners) -> Corners {
 }
 
 /// The box of a piece's control points, which contains it, with room.
-fn around(piece: &Piece) -> Corners {
+pub(super) fn around(piece: &Piece) -> Corners {
     let wide = |v: [f32; 3]| v.map(f64::from);
     let (origin, low, b1, b2) = (wide(piece.origin), wide(piece.origin_low), wide(piece.b1), wide(piece.b2));
     let legs = super::norm(b1) + super::norm(super::along(b1, 1.0, b2));

@@ -96,7 +96,7 @@ const CURVE_PARTS: usize = 32;
 const SEGMENT_CELLS: usize = 16;
 
 /// Most cells of a solid.
-const MOST_CELLS: usize = 64;
+pub const MOST_CELLS: usize = 64;
 
 /// Slower parts of an axis than this fraction of the fastest count as kinks.
 const SLOW: f64 = 1e-3;

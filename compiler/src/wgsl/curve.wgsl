@@ -1,8 +1,8 @@
 // Closest point on a curve of canonical pieces in f32, the same text as
-// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl` and
-// `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
+// `runtime-cpu/src/math/curve.rs`, where ranges, errors and sources stand. Needs `fun.wgsl`, the number of curves
+// VOL_CURVES and `vol_curve_word(index: u32) -> f32`; the words of a piece are those of `vol_compiler::curve::Piece`.
 
-const VOL_PIECE_WORDS: u32 = 52u;
+const VOL_PIECE_WORDS: u32 = 60u;
 // Below this a divisor counts as it: quotients stay finite.
 const VOL_TINY: f32 = 1e-30;
 // Distance to a curve without pieces, scene units.
@@ -11,6 +11,12 @@ const VOL_FAR: f32 = 1e18;
 const VOL_REACH: f32 = 1e8;
 // Largest stretch reported.
 const VOL_STRETCH: f32 = 1e6;
+
+// By how much a squared distance is taken larger before boxes are compared with it: more than the kernels are off far from
+// the curve.
+const VOL_LOOSE: f32 = 1.00001;
+// What they are off near it, over the length of the curve, several times.
+const VOL_SLACK: f32 = 4e-6;
 
 // A foot at an end is held there if its offset leans along the tangent by more than this share.
 const VOL_LEAN: f32 = 1e-3;
@@ -304,19 +310,55 @@ fn vol_slopes(p: vec3f, word: u32, t: f32) -> VolCurveSlopes {
     );
 }
 
-// Where a curve is: pieces `first .. first + count` of the buffer.
+// Where a curve is: pieces `first .. first + count` of the buffer; `number` among all curves.
 struct VolCurve {
     first: u32,
     count: u32,
+    number: u32,
 }
 
-// The closest point of a curve, from `vol_held_point`. Every point visits the same piece at the same time.
+// The last search on a curve, from which the next one is most often near.
+struct VolLastSearch {
+    some: bool,
+    point: vec3f,
+    found: VolSearch,
+    // Distance of the foot at most.
+    reach: f32,
+}
+
+var<private> vol_last_search: array<VolLastSearch, VOL_CURVES>;
+
+// Squared distance from a point to the box around a piece; 0 inside.
+fn vol_box_dist_sq(p: vec3f, word: u32) -> f32 {
+    let below = vol_curve_vector(word + 52u) - p;
+    let above = p - vol_curve_vector(word + 55u);
+    let x = max(max(below.x, above.x), 0.0);
+    let y = max(max(below.y, above.y), 0.0);
+    let z = max(max(below.z, above.z), 0.0);
+    return ((x * x) + (y * y)) + (z * z);
+}
+
+// The closest point of a curve, from `vol_held_point`, as if every piece were visited: one that is passed over is in a box
+// farther away than the winner can be. That is at most as far away as the last foot, which the point has moved away from.
 fn vol_search(p: vec3f, curve: VolCurve) -> VolSearch {
-    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
-    // Visit the pieces along the curve.
-    for (var index = 0u; index < curve.count; index = index + 1u) {
-        search = vol_visit(search, p, (curve.first + index) * VOL_PIECE_WORDS, index);
+    let last = vol_last_search[curve.number];
+    if (last.some & all(last.point == p)) {
+        return last.found;
     }
+    let way = p - last.point;
+    let reach = last.reach + sqrt(vol_dot(way, way));
+    var bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
+    // Visit the pieces along the curve.
+    var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
+    for (var index = 0u; index < curve.count; index = index + 1u) {
+        let word = (curve.first + index) * VOL_PIECE_WORDS;
+        if (vol_box_dist_sq(p, word) <= bound) {
+            search = vol_visit(search, p, word, index);
+            bound = min(bound, search.dist_sq * VOL_LOOSE);
+        }
+    }
+    let slack = VOL_SLACK * vol_curve_word((curve.first * VOL_PIECE_WORDS) + 39u);
+    vol_last_search[curve.number] = VolLastSearch(true, p, search, sqrt(search.dist_sq) + slack);
     return search;
 }
 

@@ -129,6 +129,7 @@ pub(super) struct SceneRows<'a> {
     permutation: Row,
     /// First word of `uniforms` that belongs to the curves.
     curve_table: u64,
+    pub(super) curve_count: usize,
     /// First piece and number of pieces of each curve, for a text of one frame.
     places: Option<&'a [[u32; 2]]>,
 }
@@ -142,6 +143,7 @@ impl<'a> SceneRows<'a> {
             curves: Row::new(1, "vol_curves", pieces * Piece::WORDS),
             permutation: Row { scalar: "u32", ..Row::new(2, "vol_permutation", noise_table::WORDS) },
             curve_table: outputs as u64,
+            curve_count: curves,
             places: None,
         }
     }

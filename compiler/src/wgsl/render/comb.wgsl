@@ -1,6 +1,9 @@
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
+// After the last node.
+const NO_NODE: i32 = 0x7fffffff;
+
 struct Comb {
     step: f32,
     // Where node 0 is, in steps.
@@ -9,11 +12,18 @@ struct Comb {
     // Nodes that may be inside some medium.
     first: i32,
     last: i32,
-    // The same for each medium.
-    ranges: array<vec2i, MEDIUM_SLOTS>,
+    // The same for each medium, and of those this run or the next one.
+    all: array<Runs, MEDIUM_SLOTS>,
+    runs: array<vec2i, MEDIUM_SLOTS>,
     // Signed distances of each medium at the node before and at the next one.
     before: array<f32, MEDIUM_SLOTS>,
     own: array<f32, MEDIUM_SLOTS>,
+}
+
+// First and last nodes of up to four runs, in any order; NO_NODE is the first of none.
+struct Runs {
+    first: vec4i,
+    last: vec4i,
 }
 
 // Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -29,76 +39,121 @@ fn medium_word(medium: u32) -> u32 {
     return AT_MEDIA + (MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a medium. The box is grown by a step, so that the neighbours of a node
-// inside are in the range or next to it, and so are the panels on both sides.
-fn node_range(ray: Ray, medium: u32, step_size: f32, offset: f32, end: f32) -> vec2i {
-    let at = medium_word(medium);
+// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
+// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2i {
+    let step_size = (*comb).step;
     let reach = vec3f(1.01 * step_size);
-    let span = slab(ray, word3(at + 1u) - reach, word3(at + 4u) + reach);
-    let leave = min(span.leave, end);
+    let span = slab(ray, lo - reach, hi + reach);
+    let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
-    let first = min(max(floor((span.entry / step_size) - offset), 0.0), LAST_NODE);
-    let last = min(floor((max(leave, 0.0) / step_size) - offset), LAST_NODE);
-    let none = (span.entry > leave) | (vol_frame_word(at) == 0.0);
-    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), none);
-}
-
-// Smallest range that holds both.
-fn range_union(a: vec2i, b: vec2i) -> vec2i {
-    let both = vec2i(min(a.x, b.x), max(a.y, b.y));
-    return select(select(both, a, b.x > b.y), b, a.x > a.y);
+    let first = min(max(floor((span.entry / step_size) - (*comb).offset), 0.0), LAST_NODE);
+    let last = min(floor((max(leave, 0.0) / step_size) - (*comb).offset), LAST_NODE);
+    return select(vec2i(i32(first), i32(last)), vec2i(0, -1), span.entry > leave);
 }
 
 // Lays out the nodes of the ray up to its end.
 fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
+    comb.offset = first_node(ray.shift);
     comb.end = end;
-    let offset = first_node(ray.shift);
-    comb.offset = offset;
-    var whole = vec2i(0, -1);
+    comb.first = NO_NODE;
+    comb.last = -1;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let range = node_range(ray, medium, step_size, offset, end);
-        comb.ranges[medium] = range;
-        whole = range_union(whole, range);
-    }
-    comb.first = whole.x;
-    comb.last = min(whole.y, whole.x + (MAX_NODES - 1));
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let runs = find_runs(ray, medium, &comb);
+        comb.all[medium] = runs;
+        comb.runs[medium] = run_from(runs, 0);
+        comb.first = min(comb.first, comb.runs[medium].x);
+        comb.last = max(comb.last, max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w)));
         comb.before[medium] = FAR;
         comb.own[medium] = FAR;
     }
+    comb.last = min(comb.last, min(comb.first, NO_NODE - MAX_NODES) + (MAX_NODES - 1));
     return comb;
 }
 
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn wall(ray: Ray, medium: u32, range: vec2i, t: f32, node: i32, step_size: f32, end: f32) -> f32 {
-    var region = FAR;
-    let some = range.x <= range.y;
-    if (some & (node >= (range.x - 1)) & (node <= (range.y + 1))) {
-        let point = ray_at(ray, t);
-        // What is not within a step of a cell is outside, and so are its neighbours.
-        if (near_cell(medium, point, step_size)) {
-            region = medium_region(medium, point);
-        }
-    }
-    return max(region, max(t - end, -t));
-}
-
-// Whether a point is within a step of a cell of a medium; a medium without cells may be anywhere.
-fn near_cell(medium: u32, point: vec3f, step_size: f32) -> bool {
+// Finds the runs of nodes that may be inside a medium: where the ray passes through cells, or anywhere in the box of a
+// medium without cells.
+fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     let at = medium_word(medium);
-    let count = u32(vol_frame_word(at + 8u));
-    let reach = vec3f(1.01 * step_size);
-    var near = count == 0u;
-    var cell = u32(vol_frame_word(at + 7u));
+    var runs = Runs(vec4i(NO_NODE), vec4i(-1));
+    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), comb);
+    if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
+        return runs;
+    }
+    let count = u32(vol_frame_word(at + 7u));
+    if (count == 0u) {
+        return add_run(runs, whole);
+    }
+    var cell = AT_CELLS + (CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let lo = input3(cell) - reach;
-        let hi = input3(cell + 3u) + reach;
-        near = near | contains(lo, hi, point);
+        let range = node_range(ray, word3(cell), word3(cell + 3u), comb);
+        if (range.x <= range.y) {
+            runs = add_run(runs, range);
+        }
         cell += CELL_WORDS;
     }
-    return near;
+    return runs;
+}
+
+// Adds nodes to those that they continue, else as a run of their own; where there are four, to one of them.
+fn add_run(before: Runs, range: vec2i) -> Runs {
+    // A node beside each run is looked at as well.
+    let continued = (before.first <= vec4i(range.y + 2)) & (before.last >= vec4i(range.x - 2));
+    let own_first = select(vec4i(NO_NODE), before.first, continued);
+    let own_last = select(vec4i(-1), before.last, continued);
+    let first = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    let last = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    let kept_first = select(before.first, vec4i(NO_NODE), continued);
+    let kept_last = select(before.last, vec4i(-1), continued);
+    let free = kept_first == vec4i(NO_NODE);
+    let place = vec4<bool>(
+        free.x,
+        free.y & !free.x,
+        free.z & !(free.x | free.y),
+        !(free.x | free.y | free.z),
+    );
+    return Runs(
+        select(kept_first, min(kept_first, vec4i(first)), place),
+        select(kept_last, max(kept_last, vec4i(last)), place),
+    );
+}
+
+// The nodes of a run from one on: of the first that does not end before it.
+fn run_from(runs: Runs, node: i32) -> vec2i {
+    let first = select(vec4i(NO_NODE), max(runs.first, vec4i(node)), runs.last >= vec4i(node));
+    let least = min(min(first.x, first.y), min(first.z, first.w));
+    let last = select(vec4i(node), runs.last, first == vec4i(least));
+    return vec2i(least, max(max(last.x, last.y), max(last.z, last.w)));
+}
+
+// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
+fn next_node(comb: ptr<function, Comb>, node: i32, lead: i32) -> i32 {
+    let after = node + 1;
+    var first = NO_NODE;
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        if ((*comb).runs[medium].y < after) {
+            (*comb).runs[medium] = run_from((*comb).all[medium], after);
+        }
+        first = min(first, (*comb).runs[medium].x);
+    }
+    let next = max(after, first - lead);
+    // Distances say nothing about nodes farther on.
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        (*comb).before[medium] = select((*comb).before[medium], FAR, next > after);
+        (*comb).own[medium] = select((*comb).own[medium], FAR, next > after);
+    }
+    return next;
+}
+
+// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
+fn wall(ray: Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
+    var region = FAR;
+    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
+        region = medium_region(medium, ray_at(ray, t));
+    }
+    return max(region, max(t - end, -t));
 }
 
 // Part of the interval between two neighbouring nodes that the first stands for, given the signed
@@ -110,7 +165,7 @@ fn share(own: f32, other: f32, step_size: f32) -> f32 {
 }
 
 // The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before the first one: so that regions are asked at one place of the text,
+// come in order, from two before each run: so that regions are asked at one place of the text,
 // since drivers write them out at each.
 fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
     var any_inside = false;
@@ -119,7 +174,7 @@ fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, 
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let before = (*comb).before[medium];
         let own = (*comb).own[medium];
-        let after = wall(ray, medium, (*comb).ranges[medium], t, node + 1, step_size, (*comb).end);
+        let after = wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
         let weight = share(own, before, step_size) + share(own, after, step_size);
         let is_inside = (own < 0.0) & (node >= (*comb).first);
         (*weights)[medium] = select(0.0, weight, is_inside);

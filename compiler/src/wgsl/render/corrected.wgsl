@@ -1,25 +1,23 @@
 // What media along a ray add and take away, by panel.wgsl.
 // Twin: runtime-cpu/src/render/corrected.rs, which says why.
 
-// Ends of panels: the node before, the node after, the walls between them.
-const BEFORE: u32 = 0u;
-const AFTER: u32 = 1u;
-const WALL: u32 = 2u;
-const MOST_WALLS: u32 = 2u;
 const THIN: f32 = 0.125;
 const THICK: f32 = 0.5;
-const END_SLOTS: u32 = (WALL + MOST_WALLS) * MEDIUM_SLOTS;
 
-// The panels between two nodes.
+// Where a panel of a medium begins or stops.
+struct PanelEnd {
+    interior: Interior,
+    // Light sent towards the eye, per unit of density.
+    source: vec3f,
+    distance: f32,
+    // Whether it is a node; else it is a wall.
+    is_node: bool,
+}
+
+// The panels between two nodes, one for each medium.
 struct Panels {
-    // Each medium at each kind of end.
-    interiors: array<Interior, END_SLOTS>,
-    // Light sent towards the eye there, per unit of density.
-    sources: array<vec3f, END_SLOTS>,
-    // Distances of the walls.
-    walls: array<vec2f, MEDIUM_SLOTS>,
-    // Kinds of the two ends of each medium's panel.
-    ends: array<vec2u, MEDIUM_SLOTS>,
+    starts: array<PanelEnd, MEDIUM_SLOTS>,
+    stops: array<PanelEnd, MEDIUM_SLOTS>,
     // Integral of the density that each end stands for.
     masses: array<vec2f, MEDIUM_SLOTS>,
     depth: vec3f,
@@ -33,14 +31,15 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
     var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var panels: Panels;
-    panels.lit = false;
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
         if (panels.some) {
-            lit_after = light_ends(ray, t, &styled, &panels);
+            if (LIT_MEDIA) {
+                lit_after = light_ends(ray, &styled, &panels);
+            }
             glow = gather(glow, node, Chunk(panels_sent(&panels), panels.depth));
         }
         // Go on while the ray still lets light through.
@@ -49,8 +48,7 @@ fn march_panels(ray: Ray, end: f32) -> Glow {
         }
         panels.lit = lit_after;
         for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-            panels.interiors[medium] = panels.interiors[MEDIUM_SLOTS + medium];
-            panels.sources[medium] = panels.sources[MEDIUM_SLOTS + medium];
+            panels.starts[medium] = panels.stops[medium];
         }
     }
     return glow;
@@ -63,74 +61,96 @@ fn find_panels(ray: Ray, comb: ptr<function, Comb>, node: i32, t: vec2f, panels:
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let own = (*comb).own[medium];
         let between = find_walls(ray, medium, comb, node, t);
-        let next = between.next;
-        var masses = vec2f(0.0);
-        var ends = vec2u(BEFORE, AFTER);
-        var stretch = t;
-        (*panels).walls[medium] = between.walls;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
-            let is_wall = kind >= WALL;
-            let wall = max(kind, WALL) - WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var interior = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-            if (is_wall || (next < 0.0)) {
-                interior = medium_interior(medium, ray_at(ray, distance));
+        let stretch = panel_stretch(own, t, between);
+        let nothing = Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+        var start = (*panels).starts[medium];
+        var stop = PanelEnd(nothing, vec3f(0.0), stretch.y, between.next < 0.0);
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let distance = select(stretch.x, stretch.y, end == STOP_END);
+            let interior = medium_interior(medium, ray_at(ray, distance));
+            if (end == STOP_END) {
+                stop.interior = interior;
+                stop.source = interior.emission;
+            } else {
+                start = PanelEnd(interior, interior.emission, distance, false);
             }
-            (*panels).interiors[(kind * MEDIUM_SLOTS) + medium] = interior;
-            let is_end = wall_ends(own, wall);
-            ends = select(ends, select(vec2u(kind, ends.y), vec2u(ends.x, kind), is_end), is_wall);
-            stretch = select(stretch, select(vec2f(distance, stretch.y), vec2f(stretch.x, distance), is_end), is_wall);
         }
+        var masses = vec2f(0.0);
         if (has_panel(comb, node, t, own, between)) {
-            let first = (*panels).interiors[(ends.x * MEDIUM_SLOTS) + medium];
-            let last = (*panels).interiors[(ends.y * MEDIUM_SLOTS) + medium];
-            let open = open_ends(comb, node, t, own, next);
-            masses = panel_masses((*comb).step, stretch.y - stretch.x, vec2f(first.density, last.density), open);
-            (*panels).depth += (first.extinction * masses.x) + (last.extinction * masses.y);
+            let densities = vec2f(start.interior.density, stop.interior.density);
+            let open = open_ends(comb, node, t, own, between.next);
+            masses = panel_masses((*comb).step, stretch.y - stretch.x, densities, open);
+            (*panels).depth += (start.interior.extinction * masses.x) + (stop.interior.extinction * masses.y);
         }
-        (*panels).ends[medium] = ends;
+        (*panels).starts[medium] = start;
+        (*panels).stops[medium] = stop;
         (*panels).masses[medium] = masses;
         (*panels).some = (*panels).some | any(masses > vec2f(0.0));
     }
 }
 
-// Lights the ends of panels with matter; whether those at the node after are among them.
-fn light_ends(ray: Ray, t: vec2f, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
+fn panel_end(panels: ptr<function, Panels>, medium: u32, at_stop: bool) -> PanelEnd {
+    if (at_stop) {
+        return (*panels).stops[medium];
+    }
+    return (*panels).starts[medium];
+}
+
+// Places at which ends of panels are: the node before and the node after, which media share, then the two walls of each.
+const PLACES_OF_ENDS: u32 = 2u + (2u * MEDIUM_COUNT);
+const NODE_BEFORE: u32 = 0u;
+const NODE_AFTER: u32 = 1u;
+
+// Whether the panel of a medium has an end at a place.
+fn is_end_at(end: PanelEnd, medium: u32, place: u32) -> bool {
+    return place == select(2u + (2u * medium) + (place % 2u), place % 2u, end.is_node);
+}
+
+// The first place from one on with matter and without light; PLACES_OF_ENDS if there is none.
+fn next_dark_place(panels: ptr<function, Panels>, first: u32) -> u32 {
+    var next = PLACES_OF_ENDS;
+    for (var place = PLACES_OF_ENDS; place > 0u;) {
+        place -= 1u;
+        var dark = false;
+        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+            let there = is_end_at(panel_end(panels, medium, (place % 2u) == STOP_END), medium, place);
+            dark = dark | (there & any((*panels).masses[medium] > vec2f(0.0)));
+        }
+        let lit = (place == NODE_BEFORE) & (*panels).lit;
+        next = select(next, place, (place >= first) & (dark & !lit));
+    }
+    return next;
+}
+
+// Lights the ends of panels with matter; whether those at the node after are among them. Rays that are looked at side by side
+// each take their next place, so that all of them are done in a turn or two.
+fn light_ends(ray: Ray, styled: ptr<function, StyledRays>, panels: ptr<function, Panels>) -> bool {
     var lit_after = false;
-    for (var place = 0u; place < (WALL + (MOST_WALLS * MEDIUM_COUNT)); place++) {
-        // Media share nodes; each has walls of its own.
-        let is_wall = place >= WALL;
-        let wall = (max(place, WALL) - WALL) % MOST_WALLS;
-        let owner = (max(place, WALL) - WALL) / MOST_WALLS;
-        let kind = select(place, WALL + wall, is_wall);
-        var distance = select(t.y, t.x, kind == BEFORE);
-        var wanted = false;
+    var place = next_dark_place(panels, 0u);
+    while (place < PLACES_OF_ENDS) {
+        let at_stop = (place % 2u) == STOP_END;
+        var distance = 0.0;
         var scatter: array<vec3f, MEDIUM_SLOTS>;
         var source: array<vec3f, MEDIUM_SLOTS>;
         for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-            let ends = (*panels).ends[medium];
-            let own = !is_wall | (medium == owner);
-            let asks = own & any(ends == vec2u(kind)) & any((*panels).masses[medium] > vec2f(0.0));
-            wanted = wanted | asks;
-            scatter[medium] = vec3f(0.0);
-            source[medium] = vec3f(0.0);
-            if (!is_wall | asks) {
-                let interior = (*panels).interiors[(kind * MEDIUM_SLOTS) + medium];
-                scatter[medium] = interior.scattering;
-                source[medium] = interior.emission;
-                distance = select(distance, (*panels).walls[medium][wall], is_wall);
+            let end = panel_end(panels, medium, at_stop);
+            let there = is_end_at(end, medium, place);
+            scatter[medium] = select(vec3f(0.0), end.interior.scattering, there);
+            source[medium] = end.source;
+            distance = select(distance, end.distance, there);
+        }
+        light_place(ray, distance, styled, &scatter, &source);
+        for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+            if (at_stop) {
+                (*panels).stops[medium].source = source[medium];
+            } else {
+                (*panels).starts[medium].source = source[medium];
             }
         }
-        if (wanted & !((kind == BEFORE) & (*panels).lit)) {
-            light_place(ray, distance, styled, &scatter, &source);
-            lit_after = lit_after | (kind == AFTER);
-            for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-                if (!is_wall | (medium == owner)) {
-                    (*panels).sources[(kind * MEDIUM_SLOTS) + medium] = source[medium];
-                }
-            }
-        }
+        lit_after = lit_after | (place == NODE_AFTER);
+        place = next_dark_place(panels, place + 1u);
     }
     return lit_after;
 }
@@ -152,10 +172,7 @@ fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let masses = (*panels).masses[medium];
         if (any(masses > vec2f(0.0))) {
-            let ends = (*panels).ends[medium];
-            let start = (*panels).sources[(ends.x * MEDIUM_SLOTS) + medium];
-            let end = (*panels).sources[(ends.y * MEDIUM_SLOTS) + medium];
-            sent += panel_sent(masses, start, end, depth);
+            sent += panel_sent(masses, (*panels).starts[medium].source, (*panels).stops[medium].source, depth);
         }
     }
     return sent;

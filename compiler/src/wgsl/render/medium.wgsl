@@ -34,7 +34,7 @@ fn march_nodes(ray: Ray, end: f32) -> Glow {
     var styled = style_rays(ray, end);
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
         if (weigh(ray, &comb, node, &weights)) {
             glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &styled, &weights));
         }
@@ -75,7 +75,9 @@ fn node_chunk(
             source[medium] = interior.emission * mass;
         }
     }
-    light_place(ray, t, styled, &scatter, &source);
+    if (LIT_MEDIA) {
+        light_place(ray, t, styled, &scatter, &source);
+    }
     // Add up what they send.
     var sent = vec3f(0.0);
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {

@@ -50,7 +50,7 @@ const NO_MORE: u32 = 3u;
 struct Between {
     // Signed distance at the node after.
     next: f32,
-    // Walls, of which there are none, one, or two around a chord.
+    // The first and the last wall: there are none, one, or two around a chord.
     walls: vec2f,
     count: u32,
 }
@@ -59,8 +59,8 @@ struct Between {
 // the text, since drivers write it out at each.
 fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: vec2f) -> Between {
     let own = (*comb).own[medium];
-    let range = (*comb).ranges[medium];
-    let known = (range.x <= range.y) & ((node + 1) >= range.x) & (node <= range.y);
+    let run = (*comb).runs[medium];
+    let known = ((node + 1) >= run.x) & (node <= run.y);
     var between = Between(FAR, vec2f(0.0), 0u);
     var gap: Gap;
     var crossing: Crossing;
@@ -78,7 +78,7 @@ fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: ve
         }
         let point = ray_at(ray, probe);
         var value = FAR;
-        if ((aim != THE_NODE) || (known && near_cell(medium, point, (*comb).step))) {
+        if ((aim != THE_NODE) || known) {
             value = medium_region(medium, point);
         }
         let found = vec2f(probe, value);
@@ -114,7 +114,8 @@ fn find_walls(ray: Ray, medium: u32, comb: ptr<function, Comb>, node: i32, t: ve
         } else {
             crossing = crossing_narrowed(crossing, found);
             if (round == WALL_ROUNDS) {
-                between.walls[between.count] = crossing_probe(crossing);
+                let wall = crossing_probe(crossing);
+                between.walls = select(vec2f(between.walls.x, wall), vec2f(wall), between.count == 0u);
                 between.count += 1u;
                 crossing = other;
                 aim = select(NO_MORE, A_WALL, between.count < wanted);
@@ -132,9 +133,21 @@ fn has_panel(comb: ptr<function, Comb>, node: i32, t: vec2f, own: f32, between: 
     return (node >= (*comb).first) & (t.x < t.y) & some;
 }
 
-// Whether a wall is where its panel ends: the first one after a node inside, the second one otherwise.
-fn wall_ends(own: f32, wall: u32) -> bool {
-    return (own < 0.0) | (wall == 1u);
+// The two ends of a panel: where it begins, and where it stops.
+const START_END: u32 = 0u;
+const STOP_END: u32 = 1u;
+
+// Distances of the ends of a panel between two nodes: those inside, else walls.
+fn panel_stretch(own: f32, t: vec2f, between: Between) -> vec2f {
+    return select(between.walls, t, vec2<bool>(own < 0.0, between.next < 0.0));
+}
+
+// From which of the ends on, and before which, the medium has yet to be sampled: at a node inside that a panel begins with
+// it has been.
+fn new_ends(own: f32, between: Between) -> vec2u {
+    let has_walls = between.count > 0u;
+    let first = select(STOP_END, START_END, (own >= 0.0) & has_walls);
+    return vec2u(first, select(STOP_END, STOP_END + 1u, (between.next < 0.0) | has_walls));
 }
 
 // Integral of the positive part of a density over a stretch of a panel as long as a step, by its values at

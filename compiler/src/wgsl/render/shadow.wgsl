@@ -77,7 +77,7 @@ fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
     var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
     var weights: array<f32, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = comb.first - 2; node <= comb.last; node++) {
+    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
         // Optical depth of each node, all media together.
         if (weigh(ray, &comb, node, &weights)) {
             depth += node_depth(ray_at(ray, node_distance(node, comb.step, comb.offset)), &weights);
@@ -107,8 +107,8 @@ fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
     // Density and extinction of each medium at the node before.
     var before: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    // The panel before the first one is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node++) {
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
         // Optical depth of each panel, all media together.
         depth += panel_depth(ray, &comb, node, &before);
         // Go on while the ray is not dark yet.
@@ -126,32 +126,20 @@ fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<funct
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         let own = (*comb).own[medium];
         let between = find_walls(ray, medium, comb, node, t);
-        let next = between.next;
+        let stretch = panel_stretch(own, t, between);
         var first = (*before)[medium];
         var last = vec4f(0.0);
-        var stretch = t;
-        // The node after, then the walls: media are asked at one place of the text, since drivers write it out at each.
-        for (var kind = AFTER; kind < (WALL + between.count); kind++) {
-            let is_wall = kind >= WALL;
-            let wall = max(kind, WALL) - WALL;
-            let distance = select(t.y, between.walls[wall], is_wall);
-            var matter = vec4f(0.0);
-            if (is_wall || (next < 0.0)) {
-                matter = medium_extinction(medium, ray_at(ray, distance));
-            }
-            if (!is_wall) {
-                (*before)[medium] = matter;
-                last = matter;
-            } else if (wall_ends(own, wall)) {
-                last = matter;
-                stretch.y = distance;
-            } else {
-                first = matter;
-                stretch.x = distance;
-            }
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let at_stop = end == STOP_END;
+            let matter = medium_extinction(medium, ray_at(ray, select(stretch.x, stretch.y, at_stop)));
+            first = select(matter, first, at_stop);
+            last = select(last, matter, at_stop);
         }
+        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
         if (has_panel(comb, node, t, own, between)) {
-            let open = open_ends(comb, node, t, own, next);
+            let open = open_ends(comb, node, t, own, between.next);
             let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
             depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }

@@ -16,7 +16,8 @@
 //!
 //! In `vol_input` follow for each styled light slopes, transfer function, light map and means.
 
-use super::{GRID_ALIGNMENT, Pick};
+use super::glue::Pick;
+use super::words::GRID_ALIGNMENT;
 use crate::frame::Frame;
 use crate::frame::styled::{Occluders, StyledLight};
 use crate::program::style::Style;

@@ -1,8 +1,11 @@
+use super::words::{HEADER_WORDS, INFINITE, LIGHT_WORDS, MEDIUM_WORDS, OBJECT_WORDS};
 use super::*;
-use crate::frame::{CameraFrame, LightFrame, ObjectFrame, Quadrature, Sampling, Stride};
+use crate::frame::{
+    Aabb, CameraFrame, Counts, LightFrame, LightGrid, MediumFrame, ObjectFrame, Quadrature, Sampling, Stride,
+};
 use crate::ir::FunctionId;
 use crate::ir::text;
-use crate::program::{Camera, Extent, Light, LightKind, Medium, Object, Render, Slot};
+use crate::program::{Camera, Extent, Light, LightKind, Lighting, Medium, Object, Render, Slot};
 use crate::skip::Skips;
 use crate::tape::KeptTapes;
 use vol_language::source::Span;
@@ -112,7 +115,7 @@ fn frame(program: &Program) -> Frame {
             phase: medium.phase,
             lighting: Lighting::Unshadowed,
             bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
-            cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }; 2],
+            cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }, Aabb { lo: [-1.0; 3], hi: [0.0; 3] }],
         }],
         lights: vec![LightFrame {
             distant: true,
@@ -133,7 +136,7 @@ fn frame(program: &Program) -> Frame {
 
 #[test]
 fn modules_are_accepted() {
-    for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2)] {
+    for (objects, media) in [(0, 0), (1, 0), (0, 1), (3, 2), (0, MOST_WRITTEN_OUT + 1)] {
         for quadrature in [Quadrature::Midpoint, Quadrature::Corrected] {
             let text = render_module(&program(objects, media), quadrature, WORKGROUP);
             assert!(
@@ -142,6 +145,20 @@ fn modules_are_accepted() {
             );
         }
     }
+}
+
+#[test]
+fn loops_over_few_media_are_written_out() {
+    let text = |media| integrator(&program(0, media));
+    let (none, two, many) = (text(0), text(2), text(MOST_WRITTEN_OUT + 1));
+    assert!(!none.contains("let medium ="));
+    let loops = many.matches(MEDIA_LOOP).count();
+    assert!(loops > 10 && !two.contains(MEDIA_LOOP));
+    assert_eq!(two.matches("let medium = 1u;").count(), loops);
+    assert_eq!(
+        written_out("{\n  for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {\n    a\n  }\n}\n", 2),
+        "{\n  {\n      let medium = 0u;\n    a\n  }\n  {\n      let medium = 1u;\n    a\n  }\n}\n"
+    );
 }
 
 #[test]
@@ -169,9 +186,13 @@ fn words_stand_where_the_shader_looks() {
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
     assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 0.0, 2.0]);
+    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 2.0]);
     assert_eq!(words[lights..lights + 11], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
-    assert_eq!(input_words(&frame(&program)), [0; 12], "two cells");
+    let by = 1e-5;
+    let cells = [[-by; 3], [by; 3], [-1.0 - by; 3], [by; 3]].concat();
+    assert_eq!(words[place("AT_CELLS")..][..cells.len()], cells);
+    assert_eq!(words.len(), (place("AT_CELLS") + 384).next_multiple_of(4), "64 cells for each medium");
+    assert!(input_words(&frame(&program)).is_empty());
 }
 
 #[test]

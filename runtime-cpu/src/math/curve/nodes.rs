@@ -5,8 +5,9 @@
 //! is in a box farther away than some foot is, so that it could not have won (test
 //! `trees_change_nothing`).
 //!
-//! No twin: on the GPU all pieces are visited, by all points at once. A walk that differs from point to point
-//! was tried there; software drivers took minutes to compile it.
+//! No twin: on the GPU an invocation knows how far the curve was from its last point, which is a better bound, and
+//! compares the box of each piece with that (`vol_search` of `curve.wgsl`); the tree is not there. A walk that differs from point to point was tried;
+//! software drivers took minutes to compile it.
 
 use super::{Search, foot};
 use crate::math::fun::greater;

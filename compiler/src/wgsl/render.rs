@@ -5,7 +5,7 @@
 //!
 //! 1. a comment on the bindings,
 //! 2. the bindings, the prelude and the program's functions ([`super::functions`]),
-//! 3. constants and functions that tell the integrator what there is ([`glue`]),
+//! 3. constants and functions that tell the integrator what there is ([`mod@glue`]),
 //! 4. the integrator, `render.wgsl` and its folder, the twin of `runtime-cpu/src/render`,
 //! 5. the entry points, `render/pixel.wgsl`, for other programs also `render/paint.wgsl`.
 //!

@@ -13,9 +13,9 @@
 //!
 //! Pieces are not scaled by a power of two: a test over sizes 1e-6 to 1e6 shows no need.
 
-mod boxes;
+mod bounds;
 
-pub use boxes::{FEW_PIECES, Node};
+pub use bounds::{Capsule, FEW_PIECES, Node};
 
 /// One quadratic Bezier segment, scene units: start `a`, control point `b`, end `c`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,7 +151,7 @@ impl Piece {
 pub struct CurveTable {
     /// Canonical pieces in the order of the curve; empty only for an empty curve.
     pub pieces: Vec<Piece>,
-    /// Boxes around consecutive pieces; none for a curve of at most [`FEW_PIECES`].
+    /// Capsules around consecutive pieces; none for a curve of at most [`FEW_PIECES`].
     pub nodes: Vec<Node>,
     /// Length of the whole curve, scene units.
     pub length: f64,
@@ -168,7 +168,17 @@ impl CurveTable {
     pub fn words(&self) -> Vec<f32> {
         self.pieces.iter().flat_map(Piece::words).collect()
     }
+
+    /// Forgets where pieces are: all of them are looked at for every point.
+    pub(crate) fn look_at_all(&mut self) {
+        self.nodes.clear();
+        let everywhere = |piece: &mut Piece| (piece.lo, piece.hi) = ([-EVERYWHERE; 3], [EVERYWHERE; 3]);
+        self.pieces.iter_mut().for_each(everywhere);
+    }
 }
+
+/// A box with this corner holds whatever a kernel may be asked for, scene units.
+const EVERYWHERE: f32 = 1e18;
 
 /// Tangents that differ by less at a joint are one.
 const SMOOTH: f64 = 1e-8;
@@ -224,7 +234,7 @@ pub fn prepare(segments: &[Quadratic]) -> CurveTable {
     let turn = first.zip(carried).map_or(0.0, |((normal, tangent), (last, leave))| {
         angle_about(tangent, normal, transport(last, leave, tangent))
     });
-    let nodes = boxes::tree(&pieces);
+    let nodes = bounds::tree(&pieces);
     CurveTable { pieces, nodes, length, segments, turn, bend_angle: bend_angle.unwrap_or(0.0) }
 }
 
@@ -500,7 +510,7 @@ impl Part {
             lo: [0.0; 3],
             hi: [0.0; 3],
         };
-        let (lo, hi) = boxes::around(&piece);
+        let (lo, hi) = bounds::around(&piece);
         Piece { lo, hi, ..piece }
     }
 }

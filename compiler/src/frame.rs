@@ -483,7 +483,7 @@ impl Program {
     fn table(&self, segments: &[Quadratic]) -> CurveTable {
         let mut table = curve::prepare(segments);
         if !self.skips.has(Skip::CurveBoxes) {
-            table.nodes.clear();
+            table.look_at_all();
         }
         table
     }

@@ -9,7 +9,7 @@
 pub enum Skip {
     /// The region of a medium is not asked far from the boxes along its tubes.
     Cells,
-    /// Closest points are not looked for in boxes along the curve that are farther than what was found.
+    /// Closest points are not looked for in parts of the curve that are farther than what was found.
     CurveBoxes,
     /// A ray ends where less than 2^-16 of the light arrives.
     Opaque,

@@ -152,8 +152,8 @@ struct Vol_in_Stencil {
     vec4 weights;
 };
 struct Vol_in_Runs {
-    ivec4 first;
-    ivec4 last;
+    vec4 first;
+    vec4 last;
 };
 struct Vol_in_Comb {
     float step_;
@@ -301,7 +301,8 @@ const vec2 VOL_IN_PLACES[19] = vec2[19](vec2(0.0, 0.0), vec2(0.4, 0.0), vec2(0.2
 const uint VOL_IN_PLACE_COUNT = 19u;
 const float VOL_IN_LACK = 0.05;
 const float VOL_IN_BLUR = 0.3;
-const int VOL_IN_NO_NODE = 2147483647;
+const int VOL_IN_NO_NODE = 8388608;
+const float VOL_IN_NO_RUN = 8388608.0;
 const uint VOL_IN_THE_NODE = 0u;
 const uint VOL_IN_NO_MORE = 3u;
 const uint VOL_IN_A_GAP = 1u;
@@ -995,7 +996,6 @@ float vol_box_dist_sq(vec3 p_15, uint word_14) {
 }
 
 Vol_Search vol_search(vec3 p_16, Vol_Curve curve) {
-    float bound = 0.0;
     Vol_Search search = Vol_Search(3.4028235e38, 0.0, 0u, false);
     uint index_6 = 0u;
     Vol_LastSearch last_5 = vol_last_search[curve.number];
@@ -1005,42 +1005,38 @@ Vol_Search vol_search(vec3 p_16, Vol_Curve curve) {
     vec3 way = (p_16 - last_5.point);
     float _e15 = vol_dot(way, way);
     float reach_1 = (last_5.reach + sqrt(_e15));
-    bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
+    float bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
-            uint _e53 = index_6;
-            index_6 = (_e53 + 1u);
+            uint _e45 = index_6;
+            index_6 = (_e45 + 1u);
         }
         loop_init_2 = false;
-        uint _e33 = index_6;
-        if ((_e33 < curve.count)) {
+        uint _e32 = index_6;
+        if ((_e32 < curve.count)) {
         } else {
             break;
         }
         {
-            uint _e37 = index_6;
-            uint word_15 = ((curve.first + _e37) * VOL_PIECE_WORDS);
-            float _e41 = vol_box_dist_sq(p_16, word_15);
-            float _e42 = bound;
-            if ((_e41 <= _e42)) {
-                Vol_Search _e44 = search;
-                uint _e45 = index_6;
-                Vol_Search _e46 = vol_visit(_e44, p_16, word_15, _e45);
-                search = _e46;
-                float _e47 = bound;
-                float _e49 = search.dist_sq;
-                bound = min(_e47, (_e49 * VOL_LOOSE));
+            uint _e36 = index_6;
+            uint word_15 = ((curve.first + _e36) * VOL_PIECE_WORDS);
+            float _e40 = vol_box_dist_sq(p_16, word_15);
+            if ((_e40 <= bound)) {
+                Vol_Search _e42 = search;
+                uint _e43 = index_6;
+                Vol_Search _e44 = vol_visit(_e42, p_16, word_15, _e43);
+                search = _e44;
             }
         }
     }
-    float _e62 = vol_curve_word(((curve.first * VOL_PIECE_WORDS) + 39u));
-    float slack = (VOL_SLACK * _e62);
-    Vol_Search _e68 = search;
-    float _e70 = search.dist_sq;
-    vol_last_search[curve.number] = Vol_LastSearch(true, p_16, _e68, (sqrt(_e70) + slack));
-    Vol_Search _e74 = search;
-    return _e74;
+    float _e54 = vol_curve_word(((curve.first * VOL_PIECE_WORDS) + 39u));
+    float slack = (VOL_SLACK * _e54);
+    Vol_Search _e60 = search;
+    float _e62 = search.dist_sq;
+    vol_last_search[curve.number] = Vol_LastSearch(true, p_16, _e60, (sqrt(_e62) + slack));
+    Vol_Search _e66 = search;
+    return _e66;
 }
 
 Vol_CurveSlopes vol_closest_gradient(vec3 point, Vol_Curve curve_1) {
@@ -2518,21 +2514,22 @@ ivec2 vol_in_node_range(Vol_in_Ray ray_17, vec3 lo_3, vec3 hi_3, inout Vol_in_Co
     return ((_e11.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_6), int(last_7)));
 }
 
-Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, ivec2 range) {
-    bvec4 continued = bvec4(lessThanEqual(before_5.first, ivec4((range.y + 2))).x && greaterThanEqual(before_5.last, ivec4((range.x - 2))).x, lessThanEqual(before_5.first, ivec4((range.y + 2))).y && greaterThanEqual(before_5.last, ivec4((range.x - 2))).y, lessThanEqual(before_5.first, ivec4((range.y + 2))).z && greaterThanEqual(before_5.last, ivec4((range.x - 2))).z, lessThanEqual(before_5.first, ivec4((range.y + 2))).w && greaterThanEqual(before_5.last, ivec4((range.x - 2))).w);
-    ivec4 own_first = mix(ivec4(2147483647), before_5.first, continued);
-    ivec4 own_last = mix(ivec4(-1), before_5.last, continued);
-    int first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    int last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    ivec4 kept_first = mix(before_5.first, ivec4(2147483647), continued);
-    ivec4 kept_last = mix(before_5.last, ivec4(-1), continued);
-    bvec4 free_2 = equal(kept_first, ivec4(2147483647));
+Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, ivec2 nodes) {
+    vec2 range = vec2(nodes);
+    bvec4 continued = bvec4(lessThanEqual(before_5.first, vec4((range.y + 2.0))).x && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).x, lessThanEqual(before_5.first, vec4((range.y + 2.0))).y && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).y, lessThanEqual(before_5.first, vec4((range.y + 2.0))).z && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).z, lessThanEqual(before_5.first, vec4((range.y + 2.0))).w && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).w);
+    vec4 own_first = mix(vec4(8388608.0), before_5.first, continued);
+    vec4 own_last = mix(vec4(-1.0), before_5.last, continued);
+    float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    vec4 kept_first = mix(before_5.first, vec4(8388608.0), continued);
+    vec4 kept_last = mix(before_5.last, vec4(-1.0), continued);
+    bvec4 free_2 = equal(kept_first, vec4(8388608.0));
     bvec4 place_12 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
-    return Vol_in_Runs(mix(kept_first, min(kept_first, ivec4(first_7)), place_12), mix(kept_last, max(kept_last, ivec4(last_8)), place_12));
+    return Vol_in_Runs(mix(kept_first, min(kept_first, vec4(first_7)), place_12), mix(kept_last, max(kept_last, vec4(last_8)), place_12));
 }
 
 Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1) {
-    Vol_in_Runs runs = Vol_in_Runs(ivec4(2147483647), ivec4(-1));
+    Vol_in_Runs runs = Vol_in_Runs(vec4(8388608.0), vec4(-1.0));
     uint cell = 0u;
     uint index_17 = 0u;
     uint _e3 = vol_in_medium_word(medium_1);
@@ -2584,14 +2581,16 @@ Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb
 }
 
 ivec2 vol_in_run_from(Vol_in_Runs runs_1, int node) {
-    ivec4 first_8 = mix(ivec4(2147483647), max(runs_1.first, ivec4(node)), greaterThanEqual(runs_1.last, ivec4(node)));
-    int least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    ivec4 last_9 = mix(ivec4(node), runs_1.last, equal(first_8, ivec4(least_3)));
-    return ivec2(least_3, max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    float earliest = float(node);
+    vec4 first_8 = mix(vec4(8388608.0), max(runs_1.first, vec4(earliest)), greaterThanEqual(runs_1.last, vec4(earliest)));
+    float least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
+    vec4 last_9 = mix(vec4(earliest), runs_1.last, equal(first_8, vec4(least_3)));
+    int end_22 = int(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    return ivec2(int(least_3), ((least_3 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
 }
 
 Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size) {
-    Vol_in_Comb comb_2 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Comb comb_2 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     comb_2.step_ = step_size;
     float _e7 = vol_in_first_node(ray_19.shift);
     comb_2.offset = _e7;
@@ -2607,15 +2606,15 @@ Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size) {
         int _e27 = comb_2.runs[0u].x;
         comb_2.first = min(_e23, _e27);
         int _e31 = comb_2.last;
-        comb_2.last = max(_e31, max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w)));
+        comb_2.last = max(_e31, int(max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w))));
         comb_2.before[0u] = VOL_IN_FAR;
         comb_2.own[0u] = VOL_IN_FAR;
     }
-    int _e52 = comb_2.last;
-    int _e54 = comb_2.first;
-    comb_2.last = min(_e52, (min(_e54, 2147467263) + 16383));
-    Vol_in_Comb _e60 = comb_2;
-    return _e60;
+    int _e53 = comb_2.last;
+    int _e55 = comb_2.first;
+    comb_2.last = min(_e53, (_e55 + 16383));
+    Vol_in_Comb _e59 = comb_2;
+    return _e59;
 }
 
 int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead) {
@@ -2921,7 +2920,7 @@ vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7,
 }
 
 vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
-    Vol_in_Comb comb_9 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Comb comb_9 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     vec4 before_7[1] = vec4[1](vec4(0.0));
     vec3 depth_2 = vec3(0.0);
     int node_8 = 0;
@@ -3018,7 +3017,7 @@ vec3 vol_in_node_depth(vec3 point_5, inout float weights_1[1]) {
 }
 
 vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_25, float end_8) {
-    Vol_in_Comb comb_11 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Comb comb_11 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     float weights_2[1] = float[1](0.0);
     vec3 depth_4 = vec3(0.0);
     int node_11 = 0;
@@ -3612,7 +3611,7 @@ vec3 vol_in_panels_sent(inout Vol_in_Panels panels_4) {
 Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
     Vol_in_Glow glow_1 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     Vol_in_StyledRays styled_3 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_13 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Comb comb_13 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     Vol_in_Panels panels_5 = Vol_in_Panels(Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), vec2[1](vec2(0.0)), vec3(0.0), false, false);
     int node_14 = 0;
     bool lit_after_1 = false;
@@ -3715,7 +3714,7 @@ Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_Style
 Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_39, float end_15) {
     Vol_in_Glow glow_2 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     Vol_in_StyledRays styled_5 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_14 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(ivec4(0), ivec4(0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
+    Vol_in_Comb comb_14 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
     float weights_5[1] = float[1](0.0);
     int node_15 = 0;
     Vol_in_Glow _e2 = vol_in_clear_glow();

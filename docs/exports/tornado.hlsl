@@ -208,8 +208,8 @@ struct Vol_in_Stencil {
 };
 
 struct Vol_in_Runs {
-    int4 first;
-    int4 last;
+    float4 first;
+    float4 last;
 };
 
 struct Vol_in_Comb {
@@ -432,7 +432,8 @@ static const float2 VOL_IN_PLACES[19] = Constructarray19_float2_(float2(0.0, 0.0
 static const uint VOL_IN_PLACE_COUNT = 19u;
 static const float VOL_IN_LACK = 0.05;
 static const float VOL_IN_BLUR = 0.3;
-static const int VOL_IN_NO_NODE = int(2147483647);
+static const int VOL_IN_NO_NODE = int(8388608);
+static const float VOL_IN_NO_RUN = 8388608.0;
 static const uint VOL_IN_THE_NODE = 0u;
 static const uint VOL_IN_NO_MORE = 3u;
 static const uint VOL_IN_A_GAP = 1u;
@@ -1287,7 +1288,6 @@ Vol_LastSearch ConstructVol_LastSearch(bool arg0, float3 arg1, Vol_Search arg2, 
 
 Vol_Search vol_search(float3 p_16, Vol_Curve curve)
 {
-    float bound = (float)0;
     Vol_Search search = ConstructVol_Search(3.4028235e38, 0.0, 0u, false);
     uint index_6 = 0u;
 
@@ -1299,45 +1299,41 @@ Vol_Search vol_search(float3 p_16, Vol_Curve curve)
     float3 way = (p_16 - last_5.point_);
     const float _e15 = vol_dot(way, way);
     float reach_1 = (last_5.reach + sqrt(_e15));
-    bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
+    float bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
     uint2 loop_bound_2 = uint2(4294967295u, 4294967295u);
     bool loop_init_2 = true;
     while(true) {
         if (all(loop_bound_2 == uint2(0u, 0u))) { break; }
         loop_bound_2 -= uint2(loop_bound_2.y == 0u, 1u);
         if (!loop_init_2) {
-            uint _e53 = index_6;
-            index_6 = (_e53 + 1u);
+            uint _e45 = index_6;
+            index_6 = (_e45 + 1u);
         }
         loop_init_2 = false;
-        uint _e33 = index_6;
-        if ((_e33 < curve.count)) {
+        uint _e32 = index_6;
+        if ((_e32 < curve.count)) {
         } else {
             break;
         }
         {
-            uint _e37 = index_6;
-            uint word_15 = ((curve.first + _e37) * VOL_PIECE_WORDS);
-            const float _e41 = vol_box_dist_sq(p_16, word_15);
-            float _e42 = bound;
-            if ((_e41 <= _e42)) {
-                Vol_Search _e44 = search;
-                uint _e45 = index_6;
-                const Vol_Search _e46 = vol_visit(_e44, p_16, word_15, _e45);
-                search = _e46;
-                float _e47 = bound;
-                float _e49 = search.dist_sq;
-                bound = min(_e47, (_e49 * VOL_LOOSE));
+            uint _e36 = index_6;
+            uint word_15 = ((curve.first + _e36) * VOL_PIECE_WORDS);
+            const float _e40 = vol_box_dist_sq(p_16, word_15);
+            if ((_e40 <= bound)) {
+                Vol_Search _e42 = search;
+                uint _e43 = index_6;
+                const Vol_Search _e44 = vol_visit(_e42, p_16, word_15, _e43);
+                search = _e44;
             }
         }
     }
-    const float _e62 = vol_curve_word(((curve.first * VOL_PIECE_WORDS) + 39u));
-    float slack = (VOL_SLACK * _e62);
-    Vol_Search _e68 = search;
-    float _e70 = search.dist_sq;
-    vol_last_search[min(uint(curve.number), 0u)] = ConstructVol_LastSearch(true, p_16, _e68, (sqrt(_e70) + slack));
-    Vol_Search _e74 = search;
-    const Vol_Search vol_search_3 = _e74;
+    const float _e54 = vol_curve_word(((curve.first * VOL_PIECE_WORDS) + 39u));
+    float slack = (VOL_SLACK * _e54);
+    Vol_Search _e60 = search;
+    float _e62 = search.dist_sq;
+    vol_last_search[min(uint(curve.number), 0u)] = ConstructVol_LastSearch(true, p_16, _e60, (sqrt(_e62) + slack));
+    Vol_Search _e66 = search;
+    const Vol_Search vol_search_3 = _e66;
     return vol_search_3;
 }
 
@@ -3122,23 +3118,24 @@ int2 vol_in_node_range(Vol_in_Ray ray_17, float3 lo_3, float3 hi_3, inout Vol_in
     return ((_e11.entry > leave_1) ? int2(int(0), int(-1)) : int2(naga_f2i32(first_6), naga_f2i32(last_7)));
 }
 
-Vol_in_Runs ConstructVol_in_Runs(int4 arg0, int4 arg1) {
+Vol_in_Runs ConstructVol_in_Runs(float4 arg0, float4 arg1) {
     Vol_in_Runs ret = (Vol_in_Runs)0;
     ret.first = arg0;
     ret.last = arg1;
     return ret;
 }
 
-Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, int2 range)
+Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, int2 nodes)
 {
-    bool4 continued = ((before_5.first <= (asint(asuint(range.y) + asuint(int(2)))).xxxx) & (before_5.last >= (asint(asuint(range.x) - asuint(int(2)))).xxxx));
-    int4 own_first = (continued ? before_5.first : (int(2147483647)).xxxx);
-    int4 own_last = (continued ? before_5.last : (int(-1)).xxxx);
-    int first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    int last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    int4 kept_first = (continued ? (int(2147483647)).xxxx : before_5.first);
-    int4 kept_last = (continued ? (int(-1)).xxxx : before_5.last);
-    bool4 free_2 = (kept_first == (int(2147483647)).xxxx);
+    float2 range = float2(nodes);
+    bool4 continued = ((before_5.first <= ((range.y + 2.0)).xxxx) & (before_5.last >= ((range.x - 2.0)).xxxx));
+    float4 own_first = (continued ? before_5.first : (8388608.0).xxxx);
+    float4 own_last = (continued ? before_5.last : (-1.0).xxxx);
+    float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    float4 kept_first = (continued ? (8388608.0).xxxx : before_5.first);
+    float4 kept_last = (continued ? (-1.0).xxxx : before_5.last);
+    bool4 free_2 = (kept_first == (8388608.0).xxxx);
     bool4 place_11 = bool4(free_2.x, (free_2.y & !(free_2.x)), (free_2.z & !((free_2.x | free_2.y))), !(((free_2.x | free_2.y) | free_2.z)));
     const Vol_in_Runs vol_in_runs = ConstructVol_in_Runs((place_11 ? min(kept_first, (first_7).xxxx) : kept_first), (place_11 ? max(kept_last, (last_8).xxxx) : kept_last));
     return vol_in_runs;
@@ -3146,7 +3143,7 @@ Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, int2 range)
 
 Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1)
 {
-    Vol_in_Runs runs = ConstructVol_in_Runs((int(2147483647)).xxxx, (int(-1)).xxxx);
+    Vol_in_Runs runs = ConstructVol_in_Runs((8388608.0).xxxx, (-1.0).xxxx);
     uint cell = (uint)0;
     uint index_17 = 0u;
 
@@ -3206,10 +3203,12 @@ Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb
 
 int2 vol_in_run_from(Vol_in_Runs runs_1, int node)
 {
-    int4 first_8 = ((runs_1.last >= (node).xxxx) ? max(runs_1.first, (node).xxxx) : (int(2147483647)).xxxx);
-    int least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    int4 last_9 = ((first_8 == (least_3).xxxx) ? runs_1.last : (node).xxxx);
-    return int2(least_3, max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    float earliest = float(node);
+    float4 first_8 = ((runs_1.last >= (earliest).xxxx) ? max(runs_1.first, (earliest).xxxx) : (8388608.0).xxxx);
+    float least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
+    float4 last_9 = ((first_8 == (least_3).xxxx) ? runs_1.last : (earliest).xxxx);
+    int end_22 = naga_f2i32(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    return int2(naga_f2i32(least_3), ((least_3 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
 }
 
 Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size)
@@ -3231,15 +3230,15 @@ Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size)
         int _e27 = comb_2.runs[0u].x;
         comb_2.first = min(_e23, _e27);
         int _e31 = comb_2.last;
-        comb_2.last = max(_e31, max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w)));
+        comb_2.last = max(_e31, naga_f2i32(max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w))));
         comb_2.before[0u] = VOL_IN_FAR;
         comb_2.own[0u] = VOL_IN_FAR;
     }
-    int _e52 = comb_2.last;
-    int _e54 = comb_2.first;
-    comb_2.last = min(_e52, asint(asuint(min(_e54, int(2147467263))) + asuint(int(16383))));
-    Vol_in_Comb _e60 = comb_2;
-    const Vol_in_Comb vol_in_comb = _e60;
+    int _e53 = comb_2.last;
+    int _e55 = comb_2.first;
+    comb_2.last = min(_e53, asint(asuint(_e55) + asuint(int(16383))));
+    Vol_in_Comb _e59 = comb_2;
+    const Vol_in_Comb vol_in_comb = _e59;
     return vol_in_comb;
 }
 

@@ -949,14 +949,13 @@ fn vol_search(p: vec3f, curve: Vol_Curve) -> Vol_Search {
     }
     let way = p - last.point;
     let reach = last.reach + sqrt(vol_dot(way, way));
-    var bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
+    let bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
     // Visit the pieces along the curve.
     var search = Vol_Search(VOL_LARGEST, 0.0, 0u, false);
     for (var index = 0u; index < curve.count; index = index + 1u) {
         let word = (curve.first + index) * VOL_PIECE_WORDS;
         if (vol_box_dist_sq(p, word) <= bound) {
             search = vol_visit(search, p, word, index);
-            bound = min(bound, search.dist_sq * VOL_LOOSE);
         }
     }
     let slack = VOL_SLACK * vol_curve_word((curve.first * VOL_PIECE_WORDS) + 39u);
@@ -2592,8 +2591,9 @@ fn vol_in_distance_above(
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
-// After the last node.
-const VOL_IN_NO_NODE: i32 = 0x7fffffff;
+// After the last node; f32 knows it.
+const VOL_IN_NO_NODE: i32 = 0x800000;
+const VOL_IN_NO_RUN: f32 = 8388608.0;
 
 struct Vol_in_Comb {
     step: f32,
@@ -2611,10 +2611,11 @@ struct Vol_in_Comb {
     own: array<f32, VOL_IN_MEDIUM_SLOTS>,
 }
 
-// First and last nodes of up to four runs, in any order; NO_NODE is the first of none.
+// First and last nodes of up to four runs, in any order; NO_RUN is the first of none. Numbers of nodes, which f32 knows: GLSL ES
+// 3.00 chooses among components of float vectors only.
 struct Vol_in_Runs {
-    first: vec4i,
-    last: vec4i,
+    first: vec4f,
+    last: vec4f,
 }
 
 // Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -2657,11 +2658,11 @@ fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32) -> Vol_in_Comb {
         comb.all[medium] = runs;
         comb.runs[medium] = vol_in_run_from(runs, 0);
         comb.first = min(comb.first, comb.runs[medium].x);
-        comb.last = max(comb.last, max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w)));
+        comb.last = max(comb.last, i32(max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w))));
         comb.before[medium] = VOL_IN_FAR;
         comb.own[medium] = VOL_IN_FAR;
     }
-    comb.last = min(comb.last, min(comb.first, VOL_IN_NO_NODE - VOL_IN_MAX_NODES) + (VOL_IN_MAX_NODES - 1));
+    comb.last = min(comb.last, comb.first + (VOL_IN_MAX_NODES - 1));
     return comb;
 }
 
@@ -2669,7 +2670,7 @@ fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32) -> Vol_in_Comb {
 // medium without cells.
 fn vol_in_find_runs(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>) -> Vol_in_Runs {
     let at = vol_in_medium_word(medium);
-    var runs = Vol_in_Runs(vec4i(VOL_IN_NO_NODE), vec4i(-1));
+    var runs = Vol_in_Runs(vec4f(VOL_IN_NO_RUN), vec4f(-1.0));
     let whole = vol_in_node_range(ray, vol_in_word3(at + 1u), vol_in_word3(at + 4u), comb);
     if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
         return runs;
@@ -2690,16 +2691,17 @@ fn vol_in_find_runs(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Com
 }
 
 // Adds nodes to those that they continue, else as a run of their own; where there are four, to one of them.
-fn vol_in_add_run(before: Vol_in_Runs, range: vec2i) -> Vol_in_Runs {
+fn vol_in_add_run(before: Vol_in_Runs, nodes: vec2i) -> Vol_in_Runs {
+    let range = vec2f(nodes);
     // A node beside each run is looked at as well.
-    let continued = (before.first <= vec4i(range.y + 2)) & (before.last >= vec4i(range.x - 2));
-    let own_first = select(vec4i(VOL_IN_NO_NODE), before.first, continued);
-    let own_last = select(vec4i(-1), before.last, continued);
+    let continued = (before.first <= vec4f(range.y + 2.0)) & (before.last >= vec4f(range.x - 2.0));
+    let own_first = select(vec4f(VOL_IN_NO_RUN), before.first, continued);
+    let own_last = select(vec4f(-1.0), before.last, continued);
     let first = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
     let last = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    let kept_first = select(before.first, vec4i(VOL_IN_NO_NODE), continued);
-    let kept_last = select(before.last, vec4i(-1), continued);
-    let free = kept_first == vec4i(VOL_IN_NO_NODE);
+    let kept_first = select(before.first, vec4f(VOL_IN_NO_RUN), continued);
+    let kept_last = select(before.last, vec4f(-1.0), continued);
+    let free = kept_first == vec4f(VOL_IN_NO_RUN);
     let place = vec4<bool>(
         free.x,
         free.y & !free.x,
@@ -2707,17 +2709,19 @@ fn vol_in_add_run(before: Vol_in_Runs, range: vec2i) -> Vol_in_Runs {
         !(free.x | free.y | free.z),
     );
     return Vol_in_Runs(
-        select(kept_first, min(kept_first, vec4i(first)), place),
-        select(kept_last, max(kept_last, vec4i(last)), place),
+        select(kept_first, min(kept_first, vec4f(first)), place),
+        select(kept_last, max(kept_last, vec4f(last)), place),
     );
 }
 
 // The nodes of a run from one on: of the first that does not end before it.
 fn vol_in_run_from(runs: Vol_in_Runs, node: i32) -> vec2i {
-    let first = select(vec4i(VOL_IN_NO_NODE), max(runs.first, vec4i(node)), runs.last >= vec4i(node));
+    let earliest = f32(node);
+    let first = select(vec4f(VOL_IN_NO_RUN), max(runs.first, vec4f(earliest)), runs.last >= vec4f(earliest));
     let least = min(min(first.x, first.y), min(first.z, first.w));
-    let last = select(vec4i(node), runs.last, first == vec4i(least));
-    return vec2i(least, max(max(last.x, last.y), max(last.z, last.w)));
+    let last = select(vec4f(earliest), runs.last, first == vec4f(least));
+    let end = i32(max(max(last.x, last.y), max(last.z, last.w)));
+    return vec2i(i32(least), select(end, VOL_IN_NO_NODE, least == VOL_IN_NO_RUN));
 }
 
 // The next node to look at: those of runs, and `lead` before each. More than the last if there is none.

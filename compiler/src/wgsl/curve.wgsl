@@ -347,14 +347,13 @@ fn vol_search(p: vec3f, curve: VolCurve) -> VolSearch {
     }
     let way = p - last.point;
     let reach = last.reach + sqrt(vol_dot(way, way));
-    var bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
+    let bound = select(VOL_LARGEST, (reach * reach) * VOL_LOOSE, last.some);
     // Visit the pieces along the curve.
     var search = VolSearch(VOL_LARGEST, 0.0, 0u, false);
     for (var index = 0u; index < curve.count; index = index + 1u) {
         let word = (curve.first + index) * VOL_PIECE_WORDS;
         if (vol_box_dist_sq(p, word) <= bound) {
             search = vol_visit(search, p, word, index);
-            bound = min(bound, search.dist_sq * VOL_LOOSE);
         }
     }
     let slack = VOL_SLACK * vol_curve_word((curve.first * VOL_PIECE_WORDS) + 39u);

@@ -1,8 +1,9 @@
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
-// After the last node.
-const NO_NODE: i32 = 0x7fffffff;
+// After the last node; f32 knows it.
+const NO_NODE: i32 = 0x800000;
+const NO_RUN: f32 = 8388608.0;
 
 struct Comb {
     step: f32,
@@ -20,10 +21,11 @@ struct Comb {
     own: array<f32, MEDIUM_SLOTS>,
 }
 
-// First and last nodes of up to four runs, in any order; NO_NODE is the first of none.
+// First and last nodes of up to four runs, in any order; NO_RUN is the first of none. Numbers of nodes, which f32 knows: GLSL ES
+// 3.00 chooses among components of float vectors only.
 struct Runs {
-    first: vec4i,
-    last: vec4i,
+    first: vec4f,
+    last: vec4f,
 }
 
 // Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -65,11 +67,11 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
         comb.all[medium] = runs;
         comb.runs[medium] = run_from(runs, 0);
         comb.first = min(comb.first, comb.runs[medium].x);
-        comb.last = max(comb.last, max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w)));
+        comb.last = max(comb.last, i32(max(max(runs.last.x, runs.last.y), max(runs.last.z, runs.last.w))));
         comb.before[medium] = FAR;
         comb.own[medium] = FAR;
     }
-    comb.last = min(comb.last, min(comb.first, NO_NODE - MAX_NODES) + (MAX_NODES - 1));
+    comb.last = min(comb.last, comb.first + (MAX_NODES - 1));
     return comb;
 }
 
@@ -77,7 +79,7 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
 // medium without cells.
 fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     let at = medium_word(medium);
-    var runs = Runs(vec4i(NO_NODE), vec4i(-1));
+    var runs = Runs(vec4f(NO_RUN), vec4f(-1.0));
     let whole = node_range(ray, word3(at + 1u), word3(at + 4u), comb);
     if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
         return runs;
@@ -98,16 +100,17 @@ fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
 }
 
 // Adds nodes to those that they continue, else as a run of their own; where there are four, to one of them.
-fn add_run(before: Runs, range: vec2i) -> Runs {
+fn add_run(before: Runs, nodes: vec2i) -> Runs {
+    let range = vec2f(nodes);
     // A node beside each run is looked at as well.
-    let continued = (before.first <= vec4i(range.y + 2)) & (before.last >= vec4i(range.x - 2));
-    let own_first = select(vec4i(NO_NODE), before.first, continued);
-    let own_last = select(vec4i(-1), before.last, continued);
+    let continued = (before.first <= vec4f(range.y + 2.0)) & (before.last >= vec4f(range.x - 2.0));
+    let own_first = select(vec4f(NO_RUN), before.first, continued);
+    let own_last = select(vec4f(-1.0), before.last, continued);
     let first = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
     let last = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    let kept_first = select(before.first, vec4i(NO_NODE), continued);
-    let kept_last = select(before.last, vec4i(-1), continued);
-    let free = kept_first == vec4i(NO_NODE);
+    let kept_first = select(before.first, vec4f(NO_RUN), continued);
+    let kept_last = select(before.last, vec4f(-1.0), continued);
+    let free = kept_first == vec4f(NO_RUN);
     let place = vec4<bool>(
         free.x,
         free.y & !free.x,
@@ -115,17 +118,19 @@ fn add_run(before: Runs, range: vec2i) -> Runs {
         !(free.x | free.y | free.z),
     );
     return Runs(
-        select(kept_first, min(kept_first, vec4i(first)), place),
-        select(kept_last, max(kept_last, vec4i(last)), place),
+        select(kept_first, min(kept_first, vec4f(first)), place),
+        select(kept_last, max(kept_last, vec4f(last)), place),
     );
 }
 
 // The nodes of a run from one on: of the first that does not end before it.
 fn run_from(runs: Runs, node: i32) -> vec2i {
-    let first = select(vec4i(NO_NODE), max(runs.first, vec4i(node)), runs.last >= vec4i(node));
+    let earliest = f32(node);
+    let first = select(vec4f(NO_RUN), max(runs.first, vec4f(earliest)), runs.last >= vec4f(earliest));
     let least = min(min(first.x, first.y), min(first.z, first.w));
-    let last = select(vec4i(node), runs.last, first == vec4i(least));
-    return vec2i(least, max(max(last.x, last.y), max(last.z, last.w)));
+    let last = select(vec4f(earliest), runs.last, first == vec4f(least));
+    let end = i32(max(max(last.x, last.y), max(last.z, last.w)));
+    return vec2i(i32(least), select(end, NO_NODE, least == NO_RUN));
 }
 
 // The next node to look at: those of runs, and `lead` before each. More than the last if there is none.

@@ -96,62 +96,47 @@ fn values(found: &CurvePoint) -> [f32; MAX_RESULTS] {
     [t, arc_length, curve_length, x, y, distance, overshoot, stretch]
 }
 
-/// Squared distances to the winners are at most these, in each lane.
-struct Bounds([f32; LANES]);
+/// Distances to the winners are at most these, in each lane.
+struct Reaches([f32; LANES]);
 
-/// So many leaves are searched for all lanes, each found by one of them; further ones by their lane alone.
-const SHARED_LEAVES: usize = 4;
+/// After so many points the leaf near one is looked for in the tree again, not beside the one before: rays end.
+const NEIGHBOURS: usize = 16;
 
-impl Bounds {
-    /// From the leaf that each point is likely to be near: neighbouring points share it.
-    fn new(isa: Isa, searches: &Searches, n: usize, pieces: &[Piece], nodes: &[Node]) -> Self {
-        let mut bounds = Self([f32::MAX; LANES]);
-        let (mut shared, mut last) = (0, usize::MAX);
+impl Reaches {
+    /// From the leaf that each point is likely to be near: that of its neighbour, or not far along the curve from there.
+    fn new(searches: &Searches, n: usize, nodes: &[Node]) -> Self {
+        let mut reaches = Self([f32::MAX; LANES]);
+        let mut leaf = 0;
         for lane in 0..n.min(LANES) {
-            let leaf = nodes::likely_leaf(searches.point(lane), nodes);
-            if leaf == last {
-                continue;
-            }
-            if shared < SHARED_LEAVES {
-                (shared, last) = (shared + 1, leaf);
-                for piece in &pieces[nodes[leaf].first as usize..nodes[leaf].end as usize] {
-                    isa.run::<LowerByFoot>((&mut bounds, searches, n, *piece));
-                }
+            let p = searches.point(lane);
+            leaf = if lane % NEIGHBOURS == 0 {
+                nodes::likely_leaf(p, nodes)
             } else {
-                let nearest = nodes::nearest_in(searches.point(lane), pieces, &nodes[leaf]);
-                bounds.0[lane] = bounds.0[lane].min(nodes::bound_of(nearest));
-            }
+                nodes::nearer_leaf(p, nodes, leaf)
+            };
+            reaches.0[lane] = nodes::reach_into(p, &nodes[leaf].capsule);
         }
-        bounds
-    }
-}
-
-kernel! {
-    fn LowerByFoot<'a>((bounds, searches, n, piece): (&'a mut Bounds, &'a Searches, usize, Piece)) {
-        for lane in 0..n.min(LANES) {
-            let found = nodes::bound_of(curve::foot(searches.point(lane), &piece).dist_sq);
-            bounds.0[lane] = if found < bounds.0[lane] { found } else { bounds.0[lane] };
-        }
+        reaches
     }
 }
 
 kernel! {
     /// Lowers them to what has been found.
-    fn Lower<'a>((bounds, searches, n): (&'a mut Bounds, &'a Searches, usize)) {
+    fn Lower<'a>((reaches, searches, n): (&'a mut Reaches, &'a Searches, usize)) {
         for lane in 0..n.min(LANES) {
-            let found = nodes::bound_of(searches.dist_sq[lane]);
-            bounds.0[lane] = if found < bounds.0[lane] { found } else { bounds.0[lane] };
+            let found = nodes::reach_of(searches.dist_sq[lane]);
+            reaches.0[lane] = if found < reaches.0[lane] { found } else { reaches.0[lane] };
         }
     }
 }
 
 kernel! {
-    /// In which lanes the winner may be in a box, and in how many: 0 or 1 each.
+    /// In which lanes the winner may be in a capsule, and in how many: 0 or 1 each.
     fn Reach<'a>(
-        (bounds, searches, n, node, near): (&'a Bounds, &'a Searches, usize, &'a Node, &'a mut [u32; LANES])
+        (reaches, searches, n, node, near): (&'a Reaches, &'a Searches, usize, &'a Node, &'a mut [u32; LANES])
     ) -> usize {
         for (lane, near) in near.iter_mut().enumerate().take(n.min(LANES)) {
-            *near = u32::from(nodes::box_dist_sq(searches.point(lane), node) <= bounds.0[lane]);
+            *near = u32::from(nodes::may_hold(searches.point(lane), &node.capsule, reaches.0[lane]));
         }
         near.iter().sum::<u32>() as usize
     }
@@ -196,7 +181,7 @@ impl Searches {
     }
 }
 
-/// [`nodes::search`] in each lane: a box is entered if some lane wants it, but its pieces are visited in those lanes only.
+/// [`nodes::search`] in each lane: a capsule is entered if some lane wants it, but its pieces are visited in those lanes only.
 fn search(isa: Isa, x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     let n = x[0].len().min(LANES);
     let mut searches = Searches::new(x);
@@ -207,19 +192,19 @@ fn search(isa: Isa, x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> S
         }
         return searches;
     }
-    // Pass over boxes that are farther than a foot.
-    let mut bounds = Bounds::new(isa, &searches, n, pieces, nodes);
+    // Pass over capsules that are farther than a foot.
+    let mut reaches = Reaches::new(&searches, n, nodes);
     let (mut few, mut near, mut at) = (Searches::new(x), [0; LANES], 0);
     while at < nodes.len() {
         let node = &nodes[at];
-        if isa.run::<Reach>((&bounds, &searches, n, node, &mut near)) == 0 {
+        if isa.run::<Reach>((&reaches, &searches, n, node, &mut near)) == 0 {
             at = node.skip as usize;
             continue;
         }
         if node.skip as usize == at + 1 {
             let leaf = &pieces[node.first as usize..node.end as usize];
             searches.visit_leaf(isa, n, &near, &mut few, leaf, node.first);
-            isa.run::<Lower>((&mut bounds, &searches, n));
+            isa.run::<Lower>((&mut reaches, &searches, n));
         }
         at += 1;
     }

@@ -13,7 +13,7 @@
 //! Twin: `compiler/src/wgsl/feet.wgsl`, where every point looks at all pieces.
 
 use super::{CurvePoint, NOWHERE, describe, dot, end_from_point, from_point, held_point, inner, nodes};
-use vol_compiler::curve::{Node, Piece};
+use vol_compiler::curve::{Capsule, Node, Piece};
 
 /// Feet that a piece may have.
 const FEET: u32 = 3;
@@ -66,16 +66,17 @@ pub fn next_foot(
     nodes: &[Node],
 ) -> NextFoot {
     let p = held_point(point);
-    let bound = nodes::bound_of(most * most);
+    let reach = nodes::reach_of(most * most);
     let (from, closed) = (start as u32, closed != 0.0);
-    let whole = Node { lo: [0.0; 3], hi: [0.0; 3], skip: 1, first: 0, end: pieces.len() as u32 };
+    let nothing = Capsule { start: [0.0; 3], along: [0.0; 3], per_length_sq: 0.0, radius: 0.0 };
+    let whole = Node { capsule: nothing, skip: 1, first: 0, end: pieces.len() as u32 };
     let few = nodes.is_empty();
     let nodes = if few { std::slice::from_ref(&whole) } else { nodes };
-    // Pass over boxes that are too far or behind.
+    // Pass over capsules that are too far or behind.
     let mut at = 0;
     while at < nodes.len() {
         let node = &nodes[at];
-        if (!few & (nodes::box_dist_sq(p, node) > bound)) | (node.end * FEET <= from) {
+        if (!few & !nodes::may_hold(p, &node.capsule, reach)) | (node.end * FEET <= from) {
             at = node.skip as usize;
             continue;
         }

@@ -206,6 +206,7 @@ impl World {
 
     fn function(&mut self, function: Function) -> FunctionId {
         self.program.module.functions.push(function);
+        self.program.tapes = KeptTapes::default();
         FunctionId(self.program.module.functions.len() as u32 - 1)
     }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::math::curve::feet::{feet_of, next_foot};
 use std::time::Instant;
-use vol_compiler::curve::{CurveTable, FEW_PIECES};
+use vol_compiler::curve::{Capsule, CurveTable, FEW_PIECES};
 
 /// Curves of many kinds: smooth, with corners and gaps, straight, back on themselves, with points twice.
 pub(super) fn curve_of(dice: &mut Dice, kind: usize, count: usize) -> Vec<Quadratic> {
@@ -61,16 +61,26 @@ fn trees_change_nothing() {
                 assert_eq!(found, all, "{kind} {count} {p:?}");
                 let moves = (closest_gradient(p, &pieces, &nodes), closest_gradient(p, &pieces, &[]));
                 assert_eq!(moves.0, moves.1, "{kind} {count} {p:?}");
-                let near = nodes.iter().filter(|n| nodes::box_dist_sq(p, n).sqrt() <= all.distance);
+                let near = nodes.iter().filter(|n| nodes::may_hold(p, &n.capsule, all.distance));
                 passed_over += usize::from(near.count() < nodes.len() / 4);
             }
         }
     }
-    assert!(passed_over > 2000, "boxes help at {passed_over} points");
+    assert!(passed_over > 2000, "capsules help at {passed_over} points");
+}
+
+/// Whether a capsule holds a point, in f64.
+fn holds(capsule: &Capsule, point: [f64; 3]) -> bool {
+    let line = capsule.along.map(f64::from);
+    let way: [f64; 3] = std::array::from_fn(|k| point[k] - f64::from(capsule.start[k]));
+    let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let part = (dot(way, line) * f64::from(capsule.per_length_sq)).clamp(0.0, 1.0);
+    let off: [f64; 3] = std::array::from_fn(|k| way[k] - part * line[k]);
+    dot(off, off).sqrt() < f64::from(capsule.radius)
 }
 
 #[test]
-fn boxes_hold_their_pieces() {
+fn capsules_hold_their_pieces() {
     let mut dice = Dice(72);
     for shift in [0.0, 1000.0] {
         let segments: Vec<Quadratic> = curve_of(&mut dice, 3, 100)
@@ -86,11 +96,13 @@ fn boxes_hold_their_pieces() {
             for piece in &pieces[node.first as usize..node.end as usize] {
                 for i in 0..=8 {
                     let t = f64::from(i) / 8.0;
-                    for k in 0..3 {
+                    let at: [f64; 3] = std::array::from_fn(|k| {
                         let curve = f64::from(piece.b1[k]) * 2.0 * t + f64::from(piece.b2[k]) * t * t;
-                        let at = f64::from(piece.origin[k]) + f64::from(piece.origin_low[k]) + curve;
-                        assert!(at > f64::from(node.lo[k]) && at < f64::from(node.hi[k]), "{node:?}");
-                    }
+                        f64::from(piece.origin[k]) + f64::from(piece.origin_low[k]) + curve
+                    });
+                    let in_box =
+                        (0..3).all(|k| f64::from(piece.lo[k]) < at[k] && at[k] < f64::from(piece.hi[k]));
+                    assert!(holds(&node.capsule, at) && in_box, "{node:?} {piece:?}");
                 }
             }
         }

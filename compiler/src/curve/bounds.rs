@@ -97,7 +97,9 @@ impl Capsule {
             let part = (dot(way, wide) * f64::from(per_length_sq)).clamp(0.0, 1.0);
             norm(along(way, -part, wide))
         };
-        let radius = hulls.clone().flatten().map(distance).fold(0.0, f64::max);
+        // What rounding moved the start by may be along the line.
+        let moved = norm(sub(from[0], base));
+        let radius = hulls.clone().flatten().map(distance).fold(moved, f64::max);
         let legs = hulls.map(|[a, b, c]| norm(sub(b, a)) + norm(sub(c, b))).fold(0.0, f64::max);
         let radius = ((radius + ROOM * (legs + square.sqrt())) as f32).next_up();
         Self { start, along: line, per_length_sq, radius }

@@ -1,4 +1,4 @@
-//! Long curves: trees of boxes change nothing, and what they cost.
+//! Long curves: trees of capsules change nothing, and what they cost.
 
 use super::*;
 use crate::math::curve::feet::{feet_of, next_foot};
@@ -67,6 +67,28 @@ fn trees_change_nothing() {
         }
     }
     assert!(passed_over > 2000, "capsules help at {passed_over} points");
+}
+
+/// Far from the origin the ends of capsules are rounded by more than their room.
+#[test]
+fn a_leaf_is_within_its_reach() {
+    let mut dice = Dice(74);
+    for _ in 0..400 {
+        let start = 2000.0 * dice.roll();
+        let place = |i: f64| [start + 1e-3 * i, 0.0, 0.0];
+        let segment = |i: f64| Quadratic { a: place(i), b: place(i + 0.5), c: place(i + 1.0) };
+        let segments: Vec<Quadratic> = (0..20).map(f64::from).map(segment).collect();
+        let CurveTable { pieces, nodes, .. } = prepare(&segments);
+        let leaves = nodes.iter().enumerate().filter(|(at, node)| node.skip as usize == at + 1);
+        for (_, leaf) in leaves {
+            for offset in [-2e-3, 0.0, 0.01, 0.023] {
+                let p = [(start + offset) as f32, 0.0, 0.0];
+                let found = foot(p, &pieces[leaf.first as usize]).dist_sq.sqrt();
+                let reach = nodes::reach_into(p, &leaf.capsule);
+                assert!(found <= reach, "{found} {reach} {p:?} {leaf:?}");
+            }
+        }
+    }
 }
 
 /// Whether a capsule holds a point, in f64.

@@ -169,14 +169,18 @@ fn bindings(source: &Source<'_>) -> Vec<Binding> {
     let [width, height] = job.size;
     let [uniforms, curves, permutation] = wgsl::scene_words(program, frame);
     let header = render::frame_words(program, frame, job, [0, 0, width, height], job.sampling.most);
-    let input = render::input_words(frame);
+    let input = render::input_words(program, frame);
     let spaces = render::spaces(program);
     let inputs = [
         ("vol_uniforms", "numbers of the frame, f32", uniforms),
         ("vol_curves", "curves of the frame, f32", curves),
         ("vol_permutation", "table of the noise, u32", permutation),
         ("vol_frame", "camera, objects, media, lights, f32; see frame_words", header),
-        ("vol_input", "cells around media, f32; at least one word must be bound", input),
+        (
+            "vol_input",
+            "numbers of objects, depths of the grids of lights, tables of styles, f32; at least one word must be bound",
+            input,
+        ),
     ];
     let mut all: Vec<Binding> = inputs
         .into_iter()

@@ -7,13 +7,14 @@
 
 use crate::ir::{Function, FunctionId, Inst, ValueId};
 use crate::program::{Lighting, Medium, Program, Slot};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// The sentences, in the order of the program's parts.
 #[must_use]
 pub fn dropped(program: &Program) -> Vec<String> {
     let mut list = program.report.clone();
     list.extend(switched_off(program));
+    list.extend(in_parts(program));
     list.extend(program.media.iter().flat_map(|medium| of_medium(program, medium)));
     list.extend(of_lights(program));
     list.extend(unread_params(program));
@@ -40,12 +41,26 @@ fn constant(function: &Function, value: ValueId) -> Option<f64> {
 
 /// Blocks that are there in no frame.
 fn switched_off(program: &Program) -> Vec<String> {
-    let objects = program.objects.iter().map(|object| ("object", &object.name, object.enabled));
+    let objects = program.blocks_of_objects().map(|object| ("object", &object.name, object.enabled));
     let media = program.media.iter().map(|medium| ("medium", &medium.name, medium.enabled));
     let lights = program.lights.iter().map(|light| ("light", &light.name, light.enabled));
     let off = objects.chain(media).chain(lights).filter(|(.., slot)| always(program, *slot) == Some(0.0));
     off.map(|(kind, name, _)| format!("{kind} `{name}`: `when` is never true, so it is in no frame"))
         .collect()
+}
+
+/// Solids that are marched in parts.
+fn in_parts(program: &Program) -> Vec<String> {
+    let parts = |whole: usize| program.objects[whole..].iter().take_while(|part| part.whole == whole).count();
+    let wholes =
+        (0..program.objects.len()).map(|whole| (whole, parts(whole))).filter(|(_, parts)| *parts > 1);
+    let sentence = |(whole, parts): (usize, usize)| {
+        let name = &program.objects[whole].name;
+        format!(
+            "object `{name}`: the union of its {parts} solids; a ray asks only those whose boxes it meets"
+        )
+    };
+    wholes.map(sentence).collect()
 }
 
 fn of_medium(program: &Program, medium: &Medium) -> Vec<String> {
@@ -119,14 +134,20 @@ fn unasked_fields(program: &Program) -> Option<String> {
         .then(|| format!("{count} fields of `vol query`, from colours to functions: not run for pictures"))
 }
 
-/// How much of each function is computed once per frame.
+/// How much of each function is computed once per frame; functions of parts of one solid have one name.
 fn hoisted(program: &Program) -> Vec<String> {
-    let sentence = |function: &Function| {
-        let count = operations_per_frame(&program.module.frame, function);
+    let mut counts = BTreeMap::<&str, usize>::new();
+    for function in &program.module.functions {
+        *counts.entry(&function.name).or_default() += operations_per_frame(&program.module.frame, function);
+    }
+    let mut seen = BTreeSet::new();
+    let names = program.module.functions.iter().map(|function| &*function.name);
+    let sentence = |name: &str| {
+        let count = counts[name];
         let operations = if count == 1 { "operation is" } else { "operations are" };
-        (count > 0).then(|| format!("`{}`: {count} {operations} done once per frame", function.name))
+        (count > 0).then(|| format!("`{name}`: {count} {operations} done once per frame"))
     };
-    program.module.functions.iter().filter_map(sentence).collect()
+    names.filter(|name| seen.insert(*name)).filter_map(sentence).collect()
 }
 
 /// Operations of the frame function that the uniforms of a function need.

@@ -127,6 +127,8 @@ pub struct ObjectFrame {
     /// Index in [`crate::program::Program::objects`].
     pub index: usize,
     /// See [`crate::program::Object`].
+    pub whole: usize,
+    /// See [`crate::program::Object`].
     pub distance: FunctionId,
     /// See [`crate::program::Object`].
     pub gradient: FunctionId,
@@ -508,6 +510,7 @@ fn size_of_light(kind: LightKind, given: f64) -> f32 {
 fn object_frame(index: usize, object: &crate::program::Object, solid: &Solid, stride: Stride) -> ObjectFrame {
     ObjectFrame {
         index,
+        whole: object.whole,
         distance: object.distance,
         gradient: object.gradient,
         surface: object.surface,

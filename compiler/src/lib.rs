@@ -14,6 +14,7 @@ pub mod dropped;
 pub mod error_bound;
 pub mod export;
 
+pub mod families;
 pub mod frame;
 pub mod ir;
 pub mod library;

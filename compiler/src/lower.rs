@@ -26,6 +26,7 @@ pub(crate) mod shape;
 pub(crate) mod tube;
 pub(crate) mod value;
 
+use crate::families::KeptFamilies;
 use crate::ir::graph::{Graph, Rate, Slots};
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module, ValueId, verify};
@@ -271,6 +272,7 @@ impl<'a> Lowerer<'a> {
             origins: std::mem::take(&mut self.origins),
             skips: self.skips,
             tapes: KeptTapes::default(),
+            families: KeptFamilies::default(),
             module,
         }
     }

@@ -6,6 +6,7 @@
 
 pub mod style;
 
+use crate::families::KeptFamilies;
 use crate::ir::origin::Origins;
 use crate::ir::{FunctionId, Module};
 use crate::skip::Skips;
@@ -38,7 +39,7 @@ pub struct Program {
     pub measures: Vec<(u32, Measure)>,
     /// What each frame finds out about tubes.
     pub tubes: Vec<TubeSizes>,
-    /// Solids.
+    /// Solids, large unions in parts.
     pub objects: Vec<Object>,
     /// Participating media.
     pub media: Vec<Medium>,
@@ -62,6 +63,19 @@ pub struct Program {
     pub skips: Skips,
     /// The functions as tapes, once somebody has asked for them.
     pub tapes: KeptTapes,
+    /// Functions that differ in their numbers alone, once a shader has asked for them.
+    pub families: KeptFamilies,
+}
+
+impl Program {
+    /// An object of each block that makes solids: the first of those that are its parts.
+    pub fn blocks_of_objects(&self) -> impl Iterator<Item = &Object> {
+        self.objects
+            .iter()
+            .enumerate()
+            .filter(|(index, object)| object.whole == *index)
+            .map(|(_, object)| object)
+    }
 }
 
 /// A param and where its components enter the frame function.
@@ -139,11 +153,14 @@ pub enum TubeSlope {
     Unknown,
 }
 
-/// A solid.
+/// A solid, or one of the parts that a union of many is made of.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Its name in the scene.
     pub name: String,
+    /// Index of the first part of its block, its own if it has no others. Parts stand side by side in
+    /// [`Program::objects`]; what is inside one of them is inside all.
+    pub whole: usize,
     /// Position to signed distance bound: 3 inputs, 1 output.
     pub distance: FunctionId,
     /// Position to gradient of the distance: 3 inputs, 3 outputs, not normalised.

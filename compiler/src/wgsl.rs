@@ -29,6 +29,7 @@ pub mod names;
 pub mod render;
 pub(crate) mod spirv;
 
+use crate::families::Families;
 use crate::ir::origin::Origins;
 use crate::ir::{Function, FunctionId, Module};
 use crate::program::Program;
@@ -96,12 +97,47 @@ pub struct Shader {
     pub inputs: Vec<Space>,
 }
 
-/// The prelude and all functions of a program: what an entry point is put under. `fun.wgsl` is there in any case, for the
-/// entry point.
-fn functions(program: &Program, rows: &SceneRows<'_>, notes: Option<&Notes<'_>>) -> String {
-    let all: Vec<usize> = (0..program.module.functions.len()).collect();
+/// The prelude, those functions of a program that are asked for, and its families: what an entry point is put under. `fun.wgsl` is there
+/// in any case, for the entry point.
+fn functions(
+    program: &Program,
+    rows: &SceneRows<'_>,
+    notes: Option<&Notes<'_>>,
+    is_asked: &dyn Fn(FunctionId) -> bool,
+) -> String {
+    let functions = program.module.functions.iter().enumerate();
+    let comments =
+        |index: usize| notes.map_or_else(Vec::new, |notes| notes.of(index, &program.module.functions[index]));
+    let mut all: Vec<Definition<'_>> = functions
+        .filter(|(index, _)| is_asked(FunctionId(*index as u32)))
+        .map(|(index, function)| Definition { function, index, comments: comments(index) })
+        .collect();
+    let families = Families::of(program);
+    let numbers = families.all.iter().zip(program.module.functions.len()..);
+    all.extend(numbers.map(|(family, index)| {
+        let of_first = comments(family.first.index());
+        let comment = |origin: &Option<usize>| of_first.get((*origin)?)?.clone();
+        let comments = family.origins.iter().map(comment).collect();
+        Definition { function: &family.function, index, comments }
+    }));
     let used = if program.styles.is_empty() { "vol_exp2(" } else { "vol_exp2(vol_atan2(" };
-    definitions(&program.module, rows, &all, used, notes)
+    definitions(rows, &all, used)
+}
+
+/// A function to be written.
+struct Definition<'a> {
+    function: &'a Function,
+    /// The number in its name.
+    index: usize,
+    /// A comment for each instruction, where there is something to say.
+    comments: Vec<Option<String>>,
+}
+
+impl<'a> Definition<'a> {
+    /// A function of a module without comments.
+    fn of(module: &'a Module, index: usize) -> Self {
+        Self { function: &module.functions[index], index, comments: Vec::new() }
+    }
 }
 
 /// What a text says about where its lines come from.
@@ -138,7 +174,7 @@ pub fn evaluation_module(program: &Program, function: FunctionId) -> Result<Shad
 
 fn evaluation(module: &Module, rows: &SceneRows<'_>, function: FunctionId) -> Result<Shader, WgslError> {
     let entry = evaluation_entry(function, module.function(function));
-    let functions = definitions(module, rows, &[function.index()], "", None);
+    let functions = definitions(rows, &[Definition::of(module, function.index())], "");
     let text = format!("{}{EVALUATION_BINDINGS}{functions}\n{entry}", declarations(rows));
     validate(&text)?;
     let inputs = rows.all().iter().map(layout::Row::space).chain([Space::Storage]).collect();
@@ -184,21 +220,15 @@ fn declarations(rows: &SceneRows<'_>) -> String {
     rows.all().iter().map(layout::Row::declaration).collect()
 }
 
-/// Prelude with what `user` calls, output structures and text of the functions at `indices`.
-fn definitions(
-    module: &Module,
-    rows: &SceneRows<'_>,
-    indices: &[usize],
-    user: &str,
-    notes: Option<&Notes<'_>>,
-) -> String {
+/// Prelude with what `user` calls, output structures and text of functions.
+fn definitions(rows: &SceneRows<'_>, all: &[Definition<'_>], user: &str) -> String {
     let mut body = String::new();
-    let arities: BTreeSet<usize> = indices.iter().map(|&i| module.functions[i].outputs.len()).collect();
+    let arities: BTreeSet<usize> = all.iter().map(|own| own.function.outputs.len()).collect();
     for arity in arities {
         body.push_str(&names::output_structure(arity));
     }
-    for &i in indices {
-        body.push_str(&expr::function(i, &module.functions[i], rows, notes));
+    for own in all {
+        body.push_str(&expr::function(own.index, own.function, rows, &own.comments));
     }
     let prelude = prelude(&format!("{body}{user}"));
     // Arrays cannot be empty.
@@ -261,13 +291,9 @@ mod tests {
         let shapes = (0..20).map(|i| random::Shape { outputs: i % 11, ..random::Shape::default() });
         let functions = shapes.enumerate().map(|(i, shape)| random::function(i as u64, &shape)).collect();
         let module = module(functions);
-        let all: Vec<usize> = (0..module.functions.len()).collect();
+        let all: Vec<_> = (0..module.functions.len()).map(|index| Definition::of(&module, index)).collect();
         assert_eq!(
-            validate(&format!(
-                "{}{}",
-                declarations(&rows(&module)),
-                definitions(&module, &rows(&module), &all, "", None)
-            )),
+            validate(&format!("{}{}", declarations(&rows(&module)), definitions(&rows(&module), &all, ""))),
             Ok(())
         );
     }
@@ -305,7 +331,7 @@ mod tests {
         let body = "fn bad\u{7}name(2) {\n%0 = input 1\n%1 = constant -0.5\n%2 = uniform 3\n%3 = less %0 %1\n\
             %4 = select %3 %2 %0\nreturn %4 %0\n}";
         let function = text::parse_function(body).expect("well-formed text");
-        let text = expr::function(7, &function, &rows(&module(Vec::new())), None);
+        let text = expr::function(7, &function, &rows(&module(Vec::new())), &[]);
         let mut lines = text.lines();
         assert_eq!(lines.next(), Some("// bad name"));
         assert_eq!(lines.next(), Some("fn vol_f7_bad_name(x0: f32, x1: f32) -> vec2f {"));

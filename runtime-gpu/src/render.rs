@@ -141,7 +141,7 @@ impl<'a> Picture<'a> {
         let kernel = renderer.kernel(gpu, program, job.quadrature)?;
         let scene = upload(gpu, program, frame)?;
         let header = gpu.upload(&wgsl::render::frame_words(program, frame, job, [0; 4], 0))?;
-        let input = gpu.upload(&wgsl::render::input_words(frame))?;
+        let input = gpu.upload(&wgsl::render::input_words(program, frame))?;
         let [width, height] = job.size;
         let output = gpu.zeroed(width as usize * height as usize * wgsl::render::PIXEL_WORDS)?;
         let workgroup = renderer.workgroup;

@@ -115,7 +115,7 @@ fn report(sources: &Sources, diagnostics: &[Diagnostic], format: MessageFormat) 
 /// `fine: 1 object, 2 media, 1 light, 3 params`
 fn summary(program: &Program) -> String {
     let counts = [
-        counted(program.objects.len(), "object", "objects"),
+        counted(program.blocks_of_objects().count(), "object", "objects"),
         counted(program.media.len(), "medium", "media"),
         counted(program.lights.len(), "light", "lights"),
         counted(program.params.len(), "param", "params"),

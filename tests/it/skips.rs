@@ -19,6 +19,11 @@ pub(crate) fn trials() -> Vec<Trial> {
         let test = move || neutral_in(skip, &scene, [160, 90]);
         trials.push(Trial::test(format!("skips::{}::many", skip::TABLE[skip as usize].name), test));
     }
+    for (place, eye) in [("outside", "(4, 4, 9)"), ("inside", "(1.5, 1.5, 1.5)")] {
+        trials.push(Trial::test(format!("skips::parts::seen_from_{place}"), move || {
+            edges_stay(&union_of_many(eye))
+        }));
+    }
     trials
 }
 
@@ -52,10 +57,46 @@ fn many_objects() -> String {
            camera { from: (4, 4, 9), at: (1.5, 1.5, 1.5), fov: 40deg }\n"
 }
 
+/// Overlapping balls of one solid, moved and turned together, and a ball of its own among them.
+pub(crate) fn union_of_many(eye: &str) -> String {
+    format!(
+        "let balls = [for i in 0..60: sphere(0.4 + 0.3 * fract(0.37 * i)).translate(\
+         3 * (fract(0.82 * i), fract(0.67 * i), fract(0.55 * i)))]\n\
+         object cave {{\n  shape: (union(balls) | box((0.3, 0.3, 3))).rotate_y(20deg).scale(1.1)\n  \
+         material: phong(0.2, (0.6, 0.5, 0.4), 0.2, 30)\n}}\n\
+         object ball {{ shape: sphere(0.2).translate((1.2, 1.4, 1)) }}\n\
+         light lamp {{ at: (1.7, 1.9, 1.6), color: 1, shadows: false, occlusion: 0.4 }}\n\
+         light sun {{ from: (0.3, 0.8, 0.5), spread: 4deg }}\n\
+         camera {{ from: {eye}, at: (1.8, 1.2, 0), fov: 60deg }}\n"
+    )
+}
+
+/// The parts of a union are found where the union itself is, seen from outside and from within: but for pixels on an
+/// edge, which a ray may pass on the other side.
+fn edges_stay(text: &str) -> Result<(), Failed> {
+    let size = [160, 90];
+    let program = compile_without(text, Skips::ALL)?;
+    ensure(program.objects.len() > 60, || "the union is not in parts".to_owned())?;
+    let whole = picture(text, Skips::ALL.without(Skip::Parts), Quadrature::Midpoint, size)?;
+    let parts = picture(text, Skips::ALL, Quadrature::Midpoint, size)?;
+    let level = |image: &Image| image.pixels.iter().map(|pixel| pixel.color[0]).fold(0.0, f32::max);
+    ensure(level(&whole) > 0.0, || "the picture is black".to_owned())?;
+    let is_apart = |a: f32, b: f32| (a - b).abs() > 1e-2 * level(&whole);
+    let pixels = whole.pixels.iter().zip(&parts.pixels);
+    let apart = pixels.filter(|(a, b)| (0..3).any(|i| is_apart(a.color[i], b.color[i]))).count();
+    ensure(apart <= whole.pixels.len() / 500, || format!("{apart} of {} pixels", whole.pixels.len()))
+}
+
 /// Whether it matters to a picture by itself; what is kept from frame to frame is tried in `cli/animations.rs`.
 fn in_one_picture(skip: Skip) -> bool {
     match skip {
-        Skip::Cells | Skip::CurveBoxes | Skip::Opaque | Skip::Ranges | Skip::Objects | Skip::Tapes => true,
+        Skip::Cells
+        | Skip::CurveBoxes
+        | Skip::Opaque
+        | Skip::Ranges
+        | Skip::Objects
+        | Skip::Tapes
+        | Skip::Parts => true,
         Skip::SameFrames | Skip::SameGrids => false,
     }
 }
@@ -70,7 +111,9 @@ fn bound(skip: Skip) -> f32 {
         | Skip::SameGrids
         | Skip::Ranges
         | Skip::Objects
-        | Skip::Tapes => 0.0,
+        | Skip::Tapes
+        // Of a scene without a union of many: see `edges_stay`.
+        | Skip::Parts => 0.0,
     }
 }
 

@@ -4,6 +4,7 @@
 use crate::differential::{function_of, on_cpu, on_gpu, operands};
 use crate::generated::{compiled, scenes};
 use crate::gpu_device::strict_trial;
+use crate::skips::union_of_many;
 use crate::support::{
     FIRST, Random, compile, compile_file, ensure, examples, frame, frame_at, point, program_of, render,
 };
@@ -54,6 +55,11 @@ pub(crate) fn trials() -> Vec<Trial> {
         }));
     }
     trials.push(strict_trial("strict::picture_of_a_coil", coil));
+    for (place, eye) in [("outside", "(4, 4, 9)"), ("inside", "(1.5, 1.5, 1.5)")] {
+        trials.push(strict_trial(&format!("strict::picture_of_a_union_from_{place}"), move |gpu| {
+            union(gpu, eye)
+        }));
+    }
     trials.extend((0..PARTS).map(|part| {
         strict_trial(&format!("strict::random_scenes_{part}"), move |gpu| random_scenes(gpu, part))
     }));
@@ -156,6 +162,12 @@ fn coil(gpu: &Gpu) -> Result<(), Failed> {
         same_pictures(gpu, &program, &frame(&program, 0.0, [48, 27])?)?;
     }
     Ok(())
+}
+
+/// A union of many in parts, and a body that has none.
+fn union(gpu: &Gpu, eye: &str) -> Result<(), Failed> {
+    let program = compile("union", &union_of_many(eye))?;
+    same_pictures(gpu, &program, &frame(&program, 0.0, [48, 27])?)
 }
 
 /// Pictures by both quadratures, with few samples and with many of which pixels take some.

@@ -102,9 +102,10 @@ impl Inputs {
     }
 
     fn object(&mut self, object: &ObjectFrame) {
-        let ObjectFrame { index, distance, gradient, surface, shows_normals, bounds, stride } = object;
+        let ObjectFrame { index, whole, distance, gradient, surface, shows_normals, bounds, stride } = object;
         [distance, gradient, surface].into_iter().for_each(|function| self.whole(function.0.into()));
         self.whole(*index as u64);
+        self.whole(*whole as u64);
         self.whole(u64::from(*shows_normals));
         self.aabb(bounds);
         match stride {

@@ -8,9 +8,10 @@ use super::shape::{self, Shape};
 use super::tube::Tube;
 use super::value::{Closure, LocalPoint, Value};
 use super::{Lowered, Lowerer};
-use crate::ir::ValueId;
+use crate::ir::{FunctionId, ValueId};
 use crate::program::style::{ImageFile, Style};
 use crate::program::{Camera, Field, Light, LightKind, Lighting, Medium, Object, Render, Slot, Slot3};
+use crate::skip::Skip;
 use std::rc::Rc;
 use vol_language::blocks::BlockKind;
 use vol_language::diag::Diagnostic;
@@ -249,30 +250,56 @@ fn object(lowerer: &mut Lowerer<'_>, block: &Block, ambient: [ValueId; 3], plan:
     }
     let p = lowerer.position();
     let point = Rc::new(LocalPoint { world: p, region: Rc::clone(&shape) });
-    let distance = shape.distance(lowerer, p)?;
-    let slope = shape::gradient(lowerer, distance, span)?;
+    let [distance, gradient] = distance_and_gradient(lowerer, &shape, name, span)?;
     let surface = material.surface(lowerer, &point, ambient, block.span)?;
     let base = material.base_color(lowerer, &point, block.span)?;
-    let object = Object {
-        name: name.clone(),
-        distance: lowerer.function(&format!("distance:{name}"), 3, &[distance]),
-        gradient: lowerer.function(&format!("gradient:{name}"), 3, &slope),
-        steepness: shape.steepness(lowerer, name, span)?,
-        surface: lowerer.function(&format!("surface:{name}"), 3, &surface),
-        shows_normals: matches!(*material, Material::Normals),
-        steady: shape.is_steady(),
-        extent: shape.extent(lowerer, span)?,
-        enabled: lowerer.scalar_slot(block, "when", 1.0)?,
-        span: block.span,
-    };
+    let surface = lowerer.function(&format!("surface:{name}"), 3, &surface);
+    let enabled = lowerer.scalar_slot(block, "when", 1.0)?;
+    let whole = plan.objects.len();
+    let parts = if lowerer.skips.has(Skip::Parts) { shape.parts_to_march() } else { vec![Rc::clone(&shape)] };
+    for part in &parts {
+        // A union of one part is that part.
+        let own = if parts.len() == 1 {
+            [distance, gradient]
+        } else {
+            distance_and_gradient(lowerer, part, name, span)?
+        };
+        let [distance, gradient] = own;
+        plan.objects.push(Object {
+            name: name.clone(),
+            whole,
+            distance,
+            gradient,
+            steepness: part.steepness(lowerer, name, span)?,
+            surface,
+            shows_normals: matches!(*material, Material::Normals),
+            steady: part.is_steady(),
+            extent: part.extent(lowerer, span)?,
+            enabled,
+            span: block.span,
+        });
+    }
     let fields = &mut plan.fields;
-    fields.push(Field { name: format!("distance:{name}"), function: object.distance });
-    fields.push(Field { name: format!("gradient:{name}"), function: object.gradient });
+    fields.push(Field { name: format!("distance:{name}"), function: distance });
+    fields.push(Field { name: format!("gradient:{name}"), function: gradient });
     add_field(lowerer, fields, format!("colour:{name}"), &base);
     let local = shape.local_field(lowerer, p, vol_language::hir::LocalField::Local, span)?;
     add_field(lowerer, fields, format!("local:{name}"), &local);
-    plan.objects.push(object);
     Ok(())
+}
+
+/// The functions of a solid's distance and its gradient.
+fn distance_and_gradient(
+    lowerer: &mut Lowerer<'_>,
+    shape: &Shape,
+    name: &str,
+    span: Span,
+) -> Lowered<[FunctionId; 2]> {
+    let p = lowerer.position();
+    let distance = shape.distance(lowerer, p)?;
+    let slope = shape::gradient(lowerer, distance, span)?;
+    let distance = lowerer.function(&format!("distance:{name}"), 3, &[distance]);
+    Ok([distance, lowerer.function(&format!("gradient:{name}"), 3, &slope)])
 }
 
 fn overlapping_surface(span: Span) -> Box<Diagnostic> {

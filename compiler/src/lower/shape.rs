@@ -9,12 +9,14 @@
 //! | `blend` | how two surfaces meet |
 //! | `transform` | maps of space |
 //! | `copies` | repetition |
+//! | `parts` | large unions in parts |
 //! | `steepness` | how fast the distance changes over a piece of a ray |
 //! | `steady` | what may be grown and blended |
 
 pub(crate) mod blend;
 pub(crate) mod copies;
 pub(crate) mod mandelbulb;
+mod parts;
 pub(crate) mod primitives;
 mod steady;
 mod steepness;

@@ -26,18 +26,20 @@
 //! ```
 
 use super::layout::SceneRows;
-use super::{Notes, names};
+use super::names;
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::{self, Ty};
 use crate::tape::rounded;
 use std::fmt::Write as _;
 
 /// Text of function `index`.
+///
+/// * `comments`: one for each instruction, where there is something to say
 pub(super) fn function(
     index: usize,
     function: &Function,
     rows: &SceneRows<'_>,
-    notes: Option<&Notes<'_>>,
+    comments: &[Option<String>],
 ) -> String {
     let parameters: Vec<String> = (0..function.inputs).map(|i| format!("x{i}: f32")).collect();
     let mut text = format!(
@@ -48,7 +50,6 @@ pub(super) fn function(
         names::output_type(function.outputs.len()),
     );
     let inputs: Vec<String> = (0..function.inputs).map(|i| format!("x{i}")).collect();
-    let comments = notes.map_or_else(Vec::new, |notes| notes.of(index, function));
     let writer = Writer { function, rows, comments, inputs, prefix: "v".to_owned(), indent: "  ".to_owned() };
     writer.statements(&mut text);
     let outputs: Vec<String> = function.outputs.iter().map(|&v| writer.name(v)).collect();
@@ -60,7 +61,7 @@ struct Writer<'a> {
     function: &'a Function,
     rows: &'a SceneRows<'a>,
     /// A comment for each instruction, where there is something to say.
-    comments: Vec<Option<String>>,
+    comments: &'a [Option<String>],
     /// What the inputs are called.
     inputs: Vec<String>,
     /// What the names of values start with.
@@ -133,7 +134,7 @@ impl Writer<'_> {
              {indent}for (var {name}_i: u32 = 0u; ({name}_i < {most}u) & {name}_go; {name}_i = {name}_i + 1u) {{",
         );
         let (prefix, indent) = (format!("{name}_"), format!("{indent}  "));
-        let inside = Writer { function: body, rows: self.rows, comments: Vec::new(), inputs, prefix, indent };
+        let inside = Writer { function: body, rows: self.rows, comments: &[], inputs, prefix, indent };
         inside.statements(text);
         let outputs: Vec<String> = body.outputs.iter().map(|&output| inside.name(output)).collect();
         let (indent, goes_on) = (&inside.indent, &outputs[state]);

@@ -17,9 +17,12 @@ mod words;
 
 use super::layout::{self, Row, SceneRows};
 use super::{Notes, Shader, Space, WgslError};
+use crate::families::Families;
 use crate::frame::{Frame, Job, Quadrature};
+use crate::ir::FunctionId;
 use crate::program::Program;
 use glue::glue;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 pub use words::{PIXEL_WORDS, counts, frame_words, input_words, padded, padded_cells, places, unpack};
 use words::{frame_row, input_row};
@@ -65,7 +68,7 @@ const BINDINGS: &str = "\
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_frame        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_input        f32: depths of the grids of lights, tables of styles
+//   4 vol_input        f32: numbers of objects, depths of the grids of lights, tables of styles
 //   5 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
@@ -152,7 +155,12 @@ fn module_text(
 ) -> String {
     let rows = SceneRows::of(program);
     let bindings: String = [frame_row(program), input_row()].iter().map(Row::declaration).collect();
-    let functions = super::functions(program, &rows, notes);
+    let (families, called) = (Families::of(program), glue::called(program));
+    // Others may call fields, too.
+    let fields: BTreeSet<FunctionId> =
+        program.fields.iter().filter(|_| notes.is_some()).map(|field| field.function).collect();
+    let is_asked = |id| fields.contains(&id) || (called.contains(&id) && families.number_of(id).is_none());
+    let functions = super::functions(program, &rows, notes, &is_asked);
     [
         &format!("{BINDINGS}\n{}{bindings}", super::declarations(&rows)),
         &functions,
@@ -189,10 +197,12 @@ pub(crate) fn library_text(
     // Places for cells that no medium has.
     numbers.truncate(numbers.iter().rposition(|&word| word != 0).map_or(0, |last| last + 1));
     text += &frame_row(program).constants(&numbers, keyword);
-    text += &input_row().constants(&input_words(frame), keyword);
-    for part in
-        [&super::functions(program, &rows, Some(notes)), &glue(program, job.quadrature), &integrator(program)]
-    {
+    text += &input_row().constants(&input_words(program, frame), keyword);
+    for part in [
+        &super::functions(program, &rows, Some(notes), &|_| true),
+        &glue(program, job.quadrature),
+        &integrator(program),
+    ] {
         text.push('\n');
         let lines = part.lines().filter(|line| !line.contains("counted_"));
         lines.for_each(|line| text.extend([line, "\n"]));

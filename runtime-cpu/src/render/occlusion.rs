@@ -14,6 +14,7 @@
 //!
 //! Twin: `compiler/src/wgsl/render/occlusion.wgsl`.
 
+use super::box_tree::Answer;
 use super::camera::contains;
 use super::fields::{Fields, Points};
 use super::scene::Integrator;
@@ -51,14 +52,24 @@ impl<F: Fields> Integrator<'_, F> {
         let is_near = |point: usize, lo: Vec3<F::Real>, hi: Vec3<F::Real>| {
             contains(lo.map(|x| x - height), hi.map(|x| x + height), above[point]).then_some(())
         };
-        for near in scene.ask_boxes(above.len(), is_near).chunk_by(|a, b| a.index == b.index) {
-            let solid = near[0].index;
-            let points: Points<_> = near.iter().map(|answer| above[answer.question]).collect();
-            let [found] = self.fields.sample(scene.solids[solid].distance, &points);
-            self.stats.surface_evaluations += near.len() as u64;
-            for (answer, distance) in near.iter().zip(found) {
-                let nearest = &mut distances[answer.question];
-                *nearest = nearest.min(self.sides[solid] * distance);
+        let whole = |answer: &Answer<()>| scene.solids[answer.index].whole;
+        for parts in scene.ask_boxes(above.len(), is_near).chunk_by(|a, b| whole(a) == whole(b)) {
+            // Who is in one part of a union that holds the eye is in all of it: the farthest wall counts.
+            let mut walls = vec![None; above.len()];
+            for near in parts.chunk_by(|a, b| a.index == b.index) {
+                let solid = near[0].index;
+                let points: Points<_> = near.iter().map(|answer| above[answer.question]).collect();
+                let [found] = self.fields.sample(scene.solids[solid].distance, &points);
+                self.stats.surface_evaluations += near.len() as u64;
+                let side = self.sides[solid];
+                let join = if side < F::Real::ZERO { F::Real::max } else { F::Real::min };
+                for (answer, distance) in near.iter().zip(found) {
+                    let wall: &mut Option<F::Real> = &mut walls[answer.question];
+                    *wall = Some(wall.map_or(side * distance, |other| join(other, side * distance)));
+                }
+            }
+            for (distance, wall) in distances.iter_mut().zip(walls) {
+                *distance = wall.map_or(*distance, |wall| distance.min(wall));
             }
         }
         distances

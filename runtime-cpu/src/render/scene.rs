@@ -68,6 +68,8 @@ pub(crate) struct Camera<R> {
 /// See [`vol_compiler::frame::ObjectFrame`].
 #[derive(Debug)]
 pub(crate) struct Solid<R> {
+    /// See [`vol_compiler::program::Object`].
+    pub(crate) whole: usize,
     pub(crate) distance: FunctionId,
     pub(crate) gradient: FunctionId,
     pub(crate) surface: FunctionId,
@@ -211,6 +213,7 @@ fn solids<R: Real>(frame: &Frame) -> Vec<Solid<R>> {
     let solid = |object: &vol_compiler::frame::ObjectFrame| {
         let bounds = padded(&object.bounds)?;
         Some(Solid {
+            whole: object.whole,
             distance: object.distance,
             gradient: object.gradient,
             surface: object.surface,

@@ -2,7 +2,8 @@
 //!
 //! All rays of a batch walk together, one step each at a time. A tree over the boxes of the solids tells which
 //! of them some ray meets at all; each of these is evaluated for the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
-//! distance and its normal change sign for camera rays, so the ray ends at the far wall.
+//! distance and its normal change sign for camera rays, so the ray ends at the far wall. Where one part of a union
+//! holds the eye all are seen from within, and the ray ends where it leaves the last.
 //!
 //! A ray hits what it enters: it walks on, at least a fortieth of a pixel at a time, until a distance
 //! is negative, and the hit is then found between the last two places. To stop where the distance is
@@ -16,7 +17,7 @@ use super::fields::{Fields, Points};
 use super::scene::{Batches, Integrator, Scene};
 use super::stride::Ahead;
 use crate::real::{Real, Vec3, dot, length, scale};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Most steps of a ray towards a surface. A ray that is still walking then grazes something.
 pub(crate) const MAX_STEPS: u32 = 2000;
@@ -67,6 +68,65 @@ impl<R: Real> Near<R> {
         let left = R::from_index((MAX_STEPS - step + 1) as i32);
         let even = if stuck { (self.rest / left).min(self.gap) } else { R::ZERO };
         free.max(least).max(even)
+    }
+}
+
+/// What a solid says at a place.
+#[derive(Clone, Copy, Debug)]
+struct Wall<R> {
+    /// Its index.
+    solid: usize,
+    /// Its distance, as the ray sees it.
+    value: R,
+    /// What of that is safe to walk.
+    safe: R,
+}
+
+impl<R: Real> Near<R> {
+    /// Keeps the smallest distance; that of the earlier solid on a tie.
+    fn add(&mut self, wall: &Wall<R>) {
+        self.value = self.value.min(wall.value);
+        if wall.safe < self.distance {
+            self.distance = wall.safe;
+            self.solid = wall.solid;
+        }
+    }
+}
+
+/// The parts of a union that holds the eye, while they are gone through: a ray is inside as long as it is in one of
+/// them, so the wall is that of the part in which it is deepest.
+#[derive(Debug)]
+struct Joined<R> {
+    /// The first part of the union.
+    whole: Option<usize>,
+    /// What was near each walker without any of them.
+    others: Vec<Near<R>>,
+    /// The farthest wall of each walker.
+    farthest: Vec<R>,
+}
+
+impl<R> Default for Joined<R> {
+    fn default() -> Self {
+        Self { whole: None, others: Vec::new(), farthest: Vec::new() }
+    }
+}
+
+impl<R: Real> Joined<R> {
+    /// Goes on to the next part, of the same union or of another.
+    fn begin(&mut self, whole: usize, all: &[Near<R>]) {
+        if self.whole != Some(whole) {
+            let farthest = vec![-R::from_f32(FAR); all.len()];
+            *self = Self { whole: Some(whole), others: all.to_vec(), farthest };
+        }
+    }
+
+    /// Takes a part's wall into account.
+    fn add(&mut self, near: &mut Near<R>, which: usize, wall: &Wall<R>) {
+        if wall.value > self.farthest[which] {
+            self.farthest[which] = wall.value;
+            *near = Near { gap: near.gap, rest: near.rest, ..self.others[which] };
+            near.add(wall);
+        }
     }
 }
 
@@ -142,15 +202,20 @@ impl<'a, F: Fields> Integrator<'a, F> {
         new
     }
 
-    /// Finds the solids that hold the eye.
+    /// Finds the solids that hold the eye, with all that they are parts of.
     fn find_sides(&mut self) {
         let scene = self.scene;
         let eye = Points::from_iter([scene.camera.origin]);
         let holds = |_, lo, hi| contains(lo, hi, scene.camera.origin).then_some(());
+        let mut holding = BTreeSet::new();
         for Answer { index, .. } in scene.ask_boxes(1, holds) {
             let [distance] = self.fields.sample(scene.solids[index].distance, &eye);
-            let inside = distance[0] < F::Real::ZERO;
-            self.sides[index] = if inside { -F::Real::ONE } else { F::Real::ONE };
+            if distance[0] < F::Real::ZERO {
+                holding.insert(scene.solids[index].whole);
+            }
+        }
+        for (side, solid) in self.sides.iter_mut().zip(&scene.solids) {
+            *side = if holding.contains(&solid.whole) { -F::Real::ONE } else { F::Real::ONE };
         }
     }
 
@@ -184,6 +249,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
             vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
         let walker_on = by_ray(rays.len(), walkers.iter().map(|walker| walker.ray));
+        let mut joined = Joined::default();
         for met in all_met {
             let solid = &scene.solids[met.solid];
             // Find the walkers in this solid's box, and how far the others are from it.
@@ -203,22 +269,25 @@ impl<'a, F: Fields> Integrator<'a, F> {
             }
             let places = here.iter().map(|&which| &walkers[which]);
             let points = places.map(|walker| rays[walker.ray].at(walker.t)).collect();
-            // Keep the smallest distance; the earlier solid on a tie.
-            let [mut safe] = self.fields.sample(solid.distance, &points);
+            let [mut values] = self.fields.sample(solid.distance, &points);
             self.stats.surface_evaluations += here.len() as u64;
-            for (&which, value) in here.iter().zip(&mut safe) {
-                *value = met.side * *value;
-                all[which].value = all[which].value.min(*value);
-            }
+            values.iter_mut().for_each(|value| *value = met.side * *value);
             let ahead = |index: usize| {
                 let walker: &Walker<F::Real> = &walkers[here[index]];
                 Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
             };
+            let mut safe = values.clone();
             self.shorten(solid, ahead, &mut safe);
-            for (which, safe) in here.into_iter().zip(safe) {
-                if safe < all[which].distance {
-                    all[which].distance = safe;
-                    all[which].solid = met.solid;
+            let is_within = met.side < F::Real::ZERO;
+            if is_within {
+                joined.begin(solid.whole, &all);
+            }
+            for ((which, value), safe) in here.into_iter().zip(values).zip(safe) {
+                let wall = Wall { solid: met.solid, value, safe };
+                if is_within {
+                    joined.add(&mut all[which], which, &wall);
+                } else {
+                    all[which].add(&wall);
                 }
             }
         }

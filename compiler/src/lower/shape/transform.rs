@@ -14,7 +14,7 @@ use std::rc::Rc;
 use vol_language::source::Span;
 
 /// Maps of space.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Transform {
     /// As exact as the child.
     Translate { offset: [ValueId; 3] },
@@ -42,7 +42,7 @@ pub(crate) enum Transform {
 /// The x axis becomes a circle about (0, 1 / rate): towards +y for a positive rate. The map back
 /// stretches without bound at the centre and is cut opposite the origin, so the distance is held at a
 /// margin in which neither is reached, or is that of the box around the bent solid if that is larger.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Bend {
     /// Radians per length.
     rate: ValueId,
@@ -113,6 +113,11 @@ impl Bend {
 }
 
 impl Transform {
+    /// Whether solids keep their shape, up to their size: then the union of two is moved as each of them is.
+    pub(super) fn keeps_shape(&self) -> bool {
+        matches!(self, Self::Translate { .. } | Self::Rotate { .. } | Self::Scale { .. })
+    }
+
     /// How volumes of the child change; 1 for transforms that move and turn.
     pub(super) fn volume(&self, graph: &mut Graph) -> ValueId {
         let factors = match self {

@@ -5,12 +5,14 @@ use super::words::{
     CELL_WORDS, CELLS_WORDS, HEADER, HEADER_WORDS, LIGHT_WORDS, MEDIUM_WORDS, OBJECT_WORDS, PIXEL_WORDS,
     Places,
 };
+use crate::families::Families;
 use crate::frame::Quadrature;
 use crate::frame::styled::TRANSFER_SIZE;
 use crate::ir::FunctionId;
 use crate::program::style::Shafts;
 use crate::program::{Lighting, Program};
 use crate::wgsl::names;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// Constants and functions that the integrator needs to know a program.
@@ -37,6 +39,7 @@ pub(super) fn glue(program: &Program, quadrature: Quadrature) -> String {
         ("AT_MEDIA", places.media),
         ("AT_LIGHTS", places.lights),
         ("AT_CELLS", places.cells),
+        ("ROW_WORDS", Families::of(program).row),
     ];
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
@@ -58,13 +61,58 @@ pub(super) fn glue(program: &Program, quadrature: Quadrature) -> String {
     for (name, value) in switches {
         text += &format!("const {name}: bool = {value};\n");
     }
-    for pick in picks(program) {
-        text += &pick.wgsl(program);
-    }
-    if !program.styles.is_empty() {
-        text += &styles::fields(program).wgsl(program);
-    }
+    text += &joins(program);
+    all_picks(program).for_each(|pick| text += &pick.wgsl(program));
     text
+}
+
+/// The functions of a program that pictures call.
+pub(super) fn called(program: &Program) -> BTreeSet<FunctionId> {
+    all_picks(program).flat_map(|pick| pick.functions.into_iter().flatten()).collect()
+}
+
+fn all_picks(program: &Program) -> impl Iterator<Item = Pick<'static>> {
+    let fields = (!program.styles.is_empty()).then(|| styles::fields(program));
+    picks(program).into_iter().chain(fields)
+}
+
+/// A function that tells whether an object is a part of the same solid as the one before it.
+fn joins(program: &Program) -> String {
+    let is_further = |object: usize| program.objects.get(object).is_some_and(|own| own.whole != object);
+    let objects = 0..program.objects.len();
+    let starts = objects.clone().filter(|&object| is_further(object) && !is_further(object - 1));
+    let ends = objects.filter(|&object| is_further(object) && !is_further(object + 1));
+    let runs: Vec<String> =
+        starts.zip(ends).map(|(start, end)| format!("((object >= {start}u) & (object <= {end}u))")).collect();
+    let any = if runs.is_empty() { "false".to_owned() } else { runs.join(" | ") };
+    format!("\nfn joins_the_one_before(object: u32) -> bool {{\n    return {any};\n}}\n")
+}
+
+/// What is called for an object or medium.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Callee {
+    /// Its own function.
+    Function(FunctionId),
+    /// The family that this is in, by its number.
+    Family(usize),
+}
+
+/// A call of a family with the numbers of object `index`.
+fn family_call(program: &Program, families: &Families, number: usize, arguments: &str) -> String {
+    let family = &families.all[number];
+    let name = names::function(family_index(program, number), &family.function.name);
+    let numbers = (0..family.numbers).map(|word| format!("vol_input_word(row + {word}u)"));
+    let arguments: Vec<String> = std::iter::once(arguments.to_owned()).chain(numbers).collect();
+    format!(
+        "let row = (ROW_WORDS * index) + {}u;\n            let v = {name}({});",
+        family.at,
+        arguments.join(", ")
+    )
+}
+
+/// The number of a family in the names of functions: they come after those of the program.
+pub(super) fn family_index(program: &Program, number: usize) -> usize {
+    program.module.functions.len() + number
 }
 
 /// A function that picks the function of one object or medium by index.
@@ -83,19 +131,37 @@ pub(super) struct Pick<'a> {
 }
 
 impl Pick<'_> {
+    /// What is called, with its indices: drivers write a function out wherever it is called, so each is called once.
+    fn by_callee(&self, families: &Families) -> BTreeMap<Callee, Vec<usize>> {
+        let mut all = BTreeMap::<Callee, Vec<usize>>::new();
+        for (index, function) in self.functions.iter().enumerate() {
+            let Some(function) = *function else { continue };
+            let callee = families.number_of(function).map_or(Callee::Function(function), Callee::Family);
+            all.entry(callee).or_default().push(index);
+        }
+        all
+    }
+
     pub(super) fn wgsl(&self, program: &Program) -> String {
         let mut text = format!("\nfn {} {{\n", self.signature);
         for counter in self.counters {
             let _ = writeln!(text, "    {counter} += 1u;");
         }
         text += "    switch index {\n";
-        for (index, function) in self.functions.iter().enumerate() {
-            let Some(function) = function else { continue };
-            let name = names::function(function.index(), &program.module.function(*function).name);
-            let call = format!("let v = {name}({});", self.arguments);
+        let families = Families::of(program);
+        for (function, indices) in self.by_callee(&families) {
+            let call = match function {
+                Callee::Function(id) => {
+                    let name = names::function(id.index(), &program.module.function(id).name);
+                    format!("let v = {name}({});", self.arguments)
+                }
+                Callee::Family(number) => family_call(program, &families, number, self.arguments),
+            };
+            let indices: Vec<String> = indices.iter().map(|index| format!("{index}u")).collect();
             let _ = writeln!(
                 text,
-                "        case {index}u: {{\n            {call}\n            return {};\n        }}",
+                "        case {}: {{\n            {call}\n            return {};\n        }}",
+                indices.join(", "),
                 self.result
             );
         }

@@ -93,7 +93,8 @@ fn marched_share(toward: vec3f, ray: Ray, cell: Cell) -> f32 {
 // at most `reach`.
 fn margin(ray: Ray, reach: f32, least: f32) -> f32 {
     var margin = reach;
-    var sides = no_sides();
+    var sides: array<f32, OBJECT_SLOTS>;
+    no_sides(&sides);
     var spans = spans_nearby(ray, reach);
     var t = 0.0;
     var before = 0.0;

@@ -8,7 +8,8 @@ const WEIGHT_SUM: f32 = 31.0;
 // How open a contact is, 0 to 1, to what is within a distance of it.
 fn openness(contact: Contact, reach: f32) -> f32 {
     var weights = WEIGHTS;
-    var sides = find_sides();
+    var sides: array<f32, OBJECT_SLOTS>;
+    find_sides(&sides);
     var hidden = 0.0;
     for (var index = 0u; index < WEIGHT_COUNT; index++) {
         let share = f32(index + 1u) / f32(WEIGHT_COUNT);
@@ -28,13 +29,21 @@ fn distance_above(
 ) -> f32 {
     let point = contact.position + (contact.normal * height);
     var distance = height;
+    // That without the parts of a union that holds the eye, whose farthest wall counts.
+    var others = height;
+    var farthest = -FAR;
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        if (!(joins_the_one_before(solid) & ((*sides)[solid] < 0.0))) {
+            others = distance;
+            farthest = -FAR;
+        }
         // A solid whose box is farther than the height hides nothing.
         let at = object_word(solid);
         let lo = word3(at + 1u) - vec3f(height);
         let hi = word3(at + 4u) + vec3f(height);
         if (contains(lo, hi, point) & (vol_frame_word(at) != 0.0)) {
-            distance = min(distance, (*sides)[solid] * object_distance(solid, point));
+            farthest = max(farthest, (*sides)[solid] * object_distance(solid, point));
+            distance = min(others, farthest);
         }
     }
     return distance;

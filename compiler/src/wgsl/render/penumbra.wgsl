@@ -43,7 +43,8 @@ fn lit_part_of(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
 fn walk(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
     counted_rays += 1u;
     var lowest = squared_sine(CLEAR * slope);
-    var spans = cone_spans(ray, distance, slope);
+    var spans: array<Span, OBJECT_SLOTS>;
+    cone_spans(ray, distance, slope, &spans);
     let end = min(distance, FAR);
     var t = 0.0;
     var older = vec2f(0.0);
@@ -73,8 +74,12 @@ fn walk(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
 }
 
 // Parts of the ray where a solid's box is within the cone.
-fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> {
-    var spans: array<Span, OBJECT_SLOTS>;
+fn cone_spans(
+    ray: Ray,
+    distance: f32,
+    slope: f32,
+    spans: ptr<function, array<Span, OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let lo = word3(at + 1u);
@@ -83,10 +88,9 @@ fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> 
         let width = (CLEAR * slope) * min(farthest, distance);
         let span = loosened(slab(ray, lo - vec3f(width), hi + vec3f(width)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(FAR, span.entry, there);
-        spans[solid].leave = select(-FAR, span.leave, there);
+        (*spans)[solid].entry = select(FAR, span.entry, there);
+        (*spans)[solid].leave = select(-FAR, span.leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray.

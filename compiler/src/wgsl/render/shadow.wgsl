@@ -46,8 +46,10 @@ fn enters(distance: f32, t: f32, least: f32) -> bool {
 
 // Whether the ray enters a solid before it reaches the light.
 fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
-    var sides = no_sides();
-    var spans = object_spans(ray, &sides);
+    var sides: array<f32, OBJECT_SLOTS>;
+    var spans: array<Span, OBJECT_SLOTS>;
+    no_sides(&sides);
+    object_spans(ray, &sides, &spans);
     let end = min(distance, FAR);
     var t = 0.0;
     var before = 0.0;

@@ -52,41 +52,51 @@ fn object_word(solid: u32) -> u32 {
     return AT_OBJECTS + (OBJECT_WORDS * solid);
 }
 
-// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye.
-fn find_sides() -> array<f32, OBJECT_SLOTS> {
-    var sides: array<f32, OBJECT_SLOTS>;
+// A caller hands over the arrays that it wants filled: to return one copies each of its elements.
+
+// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye, with all that they
+// are parts of.
+fn find_sides(sides: ptr<function, array<f32, OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let eye = word3(AT_EYE);
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
         if (contains(word3(at + 1u), word3(at + 4u), eye) & (vol_frame_word(at) != 0.0)) {
-            sides[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
+            (*sides)[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
+        }
+        if (joins_the_one_before(solid)) {
+            (*sides)[solid] = min((*sides)[solid], (*sides)[solid - 1u]);
         }
     }
-    return sides;
+    for (var solid = OBJECT_COUNT; solid > 1u; solid--) {
+        if (joins_the_one_before(solid - 1u)) {
+            (*sides)[solid - 2u] = min((*sides)[solid - 2u], (*sides)[solid - 1u]);
+        }
+    }
 }
 
-fn no_sides() -> array<f32, OBJECT_SLOTS> {
-    var sides: array<f32, OBJECT_SLOTS>;
+fn no_sides(sides: ptr<function, array<f32, OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
     }
-    return sides;
 }
 
 // Parts of the ray in the box of each solid, a little longer than rounding can make them; all of the
 // ray for a solid that is seen from within, since it ends where the box may end.
-fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> array<Span, OBJECT_SLOTS> {
-    var spans: array<Span, OBJECT_SLOTS>;
+fn object_spans(
+    ray: Ray,
+    sides: ptr<function, array<f32, OBJECT_SLOTS>>,
+    spans: ptr<function, array<Span, OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let span = loosened(slab(ray, word3(at + 1u), word3(at + 4u)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(FAR, span.entry, there);
-        let leave = select(span.leave, FAR, (*sides)[solid] < 0.0);
-        spans[solid].leave = select(-FAR, leave, there);
+        (*spans)[solid].entry = select(FAR, span.entry, there);
+        let is_within = ((*sides)[solid] < 0.0) & (span.entry <= span.leave);
+        let leave = select(span.leave, FAR, is_within);
+        (*spans)[solid].leave = select(-FAR, leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray, `before` that of the last step.
@@ -98,7 +108,16 @@ fn nearest(
     before: f32,
 ) -> Near {
     var near = Near(FAR, FAR, 0u, FAR, 0.0);
+    // What was near without the parts of a union that holds the eye, and the farthest wall of those: a ray is
+    // inside as long as it is in one of them.
+    var others = near;
+    var farthest = -FAR;
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        let joined = joins_the_one_before(solid) & ((*sides)[solid] < 0.0);
+        if (!joined) {
+            others = near;
+            farthest = -FAR;
+        }
         let span = (*spans)[solid];
         let some = span.entry <= span.leave;
         let ahead = some & (t < span.entry);
@@ -107,11 +126,14 @@ fn nearest(
             near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
-            near.value = min(near.value, seen);
             let safe = shorten(solid, ray, t, t - before, seen);
-            let closer = safe < near.distance;
-            near.distance = select(near.distance, safe, closer);
-            near.solid = select(near.solid, solid, closer);
+            if (!joined | (seen > farthest)) {
+                farthest = seen;
+                near.value = min(others.value, seen);
+                let closer = safe < others.distance;
+                near.distance = select(others.distance, safe, closer);
+                near.solid = select(others.solid, solid, closer);
+            }
         }
     }
     return near;
@@ -129,8 +151,10 @@ fn advance(near: Near, step: u32, least: f32) -> f32 {
 
 // First surface on the ray.
 fn trace(ray: Ray) -> Contact {
-    var sides = find_sides();
-    var spans = object_spans(ray, &sides);
+    var sides: array<f32, OBJECT_SLOTS>;
+    var spans: array<Span, OBJECT_SLOTS>;
+    find_sides(&sides);
+    object_spans(ray, &sides, &spans);
     var t = 0.0;
     var before = 0.0;
     var hit = false;

@@ -1,5 +1,6 @@
 use super::words::{HEADER_WORDS, INFINITE, LIGHT_WORDS, MEDIUM_WORDS, OBJECT_WORDS};
 use super::*;
+use crate::families::KeptFamilies;
 use crate::frame::{
     Aabb, CameraFrame, Counts, LightFrame, LightGrid, MediumFrame, ObjectFrame, Quadrature, Sampling, Stride,
 };
@@ -23,6 +24,7 @@ fn program(objects: usize, media: usize) -> Program {
         [(3, 1), (3, 3), (3, 10), (3, 10), (2, 1), (3, 4)].map(|(i, o)| function(i, o)).to_vec();
     let object = Object {
         name: "ball".to_owned(),
+        whole: 0,
         distance: FunctionId(0),
         gradient: FunctionId(1),
         steepness: None,
@@ -69,6 +71,7 @@ fn program(objects: usize, media: usize) -> Program {
         origins: Vec::new(),
         skips: Skips::ALL,
         tapes: KeptTapes::default(),
+        families: KeptFamilies::default(),
     }
 }
 
@@ -100,6 +103,7 @@ fn frame(program: &Program) -> Frame {
         },
         objects: vec![ObjectFrame {
             index: 1,
+            whole: 1,
             distance: object.distance,
             gradient: object.gradient,
             surface: object.surface,
@@ -192,7 +196,7 @@ fn words_stand_where_the_shader_looks() {
     let cells = [[-by; 3], [by; 3], [-1.0 - by; 3], [by; 3]].concat();
     assert_eq!(words[place("AT_CELLS")..][..cells.len()], cells);
     assert_eq!(words.len(), (place("AT_CELLS") + 384).next_multiple_of(4), "64 cells for each medium");
-    assert!(input_words(&frame(&program)).is_empty());
+    assert!(input_words(&program, &frame(&program)).is_empty());
 }
 
 #[test]
@@ -219,7 +223,7 @@ fn grids_stand_where_the_records_say() {
         sampling: Sampling::CENTRE,
     };
     let words = frame_words(&program, &frame, &job, [0; 4], 1);
-    let depths = input_words(&frame);
+    let depths = input_words(&program, &frame);
     let word = |at: usize| f32::from_bits(words[at]);
     let depth_at = |at: usize| f32::from_bits(depths[at]);
     let lights = HEADER_WORDS + 2 * OBJECT_WORDS + MEDIUM_WORDS;

@@ -24,13 +24,15 @@
 //! | after them | | records of the program's styles, those of the frame's lights first, see [`styles`] |
 //! | after them | `AT_CELLS` | 64 cells per medium of the program, 6 words each, lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
-//! `vol_input`, binding 4, holds what may be long, [`input_words`]: the depths of the grids, then for each styled light slopes,
+//! `vol_input`, binding 4, holds what may be long, [`input_words`]: the numbers of objects whose functions differ in them alone
+//! ([`crate::families`]), `ROW_WORDS` for each object of the program; the depths of the grids; then for each styled light slopes,
 //! transfer function, light map and means; each of these from a multiple of 64 words on.
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
 use super::styles;
+use crate::families::Families;
 use crate::frame::{Aabb, Counts, Frame, Image, Job, LightGrid, MOST_CELLS, MediumFrame, Pixel, Stride};
 use crate::program::{Lighting, Program};
 use crate::wgsl::layout::Row;
@@ -210,7 +212,7 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         styles_at += if style > 0 { styles::WORDS } else { 0 };
     }
     words.resize(places.grids, 0.0);
-    let mut depths_at = 0;
+    let mut depths_at = Families::of(program).word_count().next_multiple_of(GRID_ALIGNMENT);
     for grid in grids(frame) {
         words.extend(grid_record(grid, depths_at));
         depths_at += grid.depths.len().next_multiple_of(GRID_ALIGNMENT);
@@ -224,10 +226,10 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
     frame_row(program).filled(words.into_iter().map(f32::to_bits).collect())
 }
 
-/// The contents of `vol_input`: depths of grids, tables of styles.
+/// The contents of `vol_input`: numbers of objects, depths of grids, tables of styles.
 #[must_use]
-pub fn input_words(frame: &Frame) -> Vec<u32> {
-    let mut words = Vec::new();
+pub fn input_words(program: &Program, frame: &Frame) -> Vec<u32> {
+    let mut words: Vec<u32> = Families::of(program).words(frame).into_iter().map(f32::to_bits).collect();
     for grid in grids(frame) {
         words.resize(words.len().next_multiple_of(GRID_ALIGNMENT), 0);
         words.extend(grid.depths.iter().map(|depth| depth.to_bits()));

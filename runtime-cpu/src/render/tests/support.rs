@@ -2,6 +2,7 @@
 
 use super::super::{Batches, Stats, Watch, render_batches};
 use std::sync::atomic::AtomicBool;
+use vol_compiler::families::KeptFamilies;
 use vol_compiler::frame::{
     Aabb, CameraFrame, Frame, Image, Job, LightFrame, MediumFrame, ObjectFrame, Pixel, Quadrature, Sampling,
     Stride,
@@ -179,6 +180,7 @@ impl World {
             origins: Vec::new(),
             skips: Skips::ALL,
             tapes: KeptTapes::default(),
+            families: KeptFamilies::default(),
         };
         let frame = Frame {
             uniforms: Vec::new(),
@@ -207,6 +209,7 @@ impl World {
     fn function(&mut self, function: Function) -> FunctionId {
         self.program.module.functions.push(function);
         self.program.tapes = KeptTapes::default();
+        self.program.families = KeptFamilies::default();
         FunctionId(self.program.module.functions.len() as u32 - 1)
     }
 
@@ -223,6 +226,7 @@ impl World {
         let index = self.program.objects.len();
         self.frame.objects.push(ObjectFrame {
             index,
+            whole: index,
             distance,
             gradient,
             surface,
@@ -232,6 +236,7 @@ impl World {
         });
         self.program.objects.push(Object {
             name: "solid".to_owned(),
+            whole: index,
             distance,
             gradient,
             steepness: None,

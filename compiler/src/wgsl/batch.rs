@@ -93,7 +93,7 @@ impl Schedule {
                 is_search(inst) && depths[value.index()] == depth && !new.members.contains_key(value)
             };
             let roots: Vec<ValueId> = (0..function.insts.len() as u32).map(ValueId).filter(is_root).collect();
-            new.add(function, alike::rows(function, &roots));
+            alike::loops(function, &roots).into_iter().for_each(|rows| new.add(function, rows));
         }
         new.find_results(function);
         new.steps = new.order(function);
@@ -106,9 +106,6 @@ impl Schedule {
     }
 
     fn add(&mut self, function: &Function, rows: Vec<Vec<ValueId>>) {
-        if rows.is_empty() {
-            return;
-        }
         let index = self.batches.len();
         for (row, values) in rows.iter().enumerate() {
             let members = values.iter().enumerate();

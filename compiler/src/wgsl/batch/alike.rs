@@ -1,13 +1,14 @@
 //! Which instructions are alike for several places.
 //!
-//! In: searches that do not need each other. Out: rows, each an instruction of every place: the searches, and what follows
-//! from the search of one place alone, as far as all places have it. Instructions are alike if they do the same with
+//! In: searches that do not need each other. Out: loops of rows, each an instruction of every place: the searches, and what
+//! follows from the search of one place alone. Places that are alike in everything have a loop, if they are many; the others
+//! share one as far as they are alike. Instructions are alike if they do the same with
 //! values that are alike; numbers from elsewhere and the curve may differ. Pairs are found in the order of the instructions; a pair that
 //! could have been chosen better costs a number from a table, never a wrong value.
 
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::Op;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A point and the number of a curve.
 type Place = (Vec<ValueId>, u32);
@@ -23,28 +24,53 @@ enum Source {
     Places,
 }
 
-/// Rows of values by place, operands before what reads them; none where there are not two places.
-pub(super) fn rows(function: &Function, roots: &[ValueId]) -> Vec<Vec<ValueId>> {
-    let (sources, places) = sources(function, roots);
-    if places < 2 {
-        return Vec::new();
+/// Fewest places with a loop of their own, if it is not all of them: each loop is another search in the text.
+const LEAST_PLACES: usize = 4;
+
+/// For each loop its rows of values by place, operands before what reads them; no loop where there are not two places.
+pub(super) fn loops(function: &Function, roots: &[ValueId]) -> Vec<Vec<Vec<ValueId>>> {
+    let (sources, count) = sources(function, roots);
+    let mut places: Vec<Vec<ValueId>> = vec![Vec::new(); count];
+    for (value, source) in (0..).map(ValueId).zip(&sources) {
+        if let Source::Place(place) = source {
+            places[*place].push(value);
+        }
     }
-    let of_place = |place: usize| {
-        let values = (0..function.insts.len() as u32).map(ValueId);
-        values.filter(|value| sources[value.index()] == Source::Place(place)).collect::<Vec<_>>()
-    };
-    let first = of_place(0);
-    let pairs: Vec<Vec<Option<ValueId>>> =
-        (0..places).map(|place| paired(function, &sources, &first, &of_place(place))).collect();
+    let mut loops = Vec::new();
+    let mut others = Vec::new();
+    while let Some(first) = places.first() {
+        let is_alike = |place: &Vec<ValueId>| {
+            place.len() == first.len() && paired(function, &sources, first, place).iter().all(Option::is_some)
+        };
+        let (alike, rest): (Vec<_>, Vec<_>) = places.iter().cloned().partition(is_alike);
+        if alike.len() >= LEAST_PLACES {
+            loops.push(rows(function, &sources, &alike));
+        } else {
+            others.extend(alike);
+        }
+        places = rest;
+    }
+    // What is left shares at least the search.
+    if others.len() > 1 {
+        loops.push(rows(function, &sources, &others));
+    }
+    loops.retain(|rows| !rows.is_empty());
+    loops
+}
+
+/// The rows that all places have.
+fn rows(function: &Function, sources: &[Source], places: &[Vec<ValueId>]) -> Vec<Vec<ValueId>> {
+    let first = &places[0];
+    let pairs: Vec<_> = places.iter().map(|place| paired(function, sources, first, place)).collect();
     let mut rows: Vec<Vec<ValueId>> = Vec::new();
-    let mut kept = BTreeMap::new();
+    let mut kept = BTreeSet::new();
     for (row, &value) in first.iter().enumerate() {
         let values: Option<Vec<ValueId>> = pairs.iter().map(|found| found[row]).collect();
-        let is_inside =
-            |operand: &ValueId| sources[operand.index()] == Source::Elsewhere || kept.contains_key(operand);
-        let complete = function.insts[value.index()].operands().iter().all(is_inside);
+        let is_there =
+            |operand: &ValueId| sources[operand.index()] == Source::Elsewhere || kept.contains(operand);
+        let complete = function.insts[value.index()].operands().iter().all(is_there);
         if let (Some(values), true) = (values, complete) {
-            kept.insert(value, rows.len());
+            kept.insert(value);
             rows.push(values);
         }
     }

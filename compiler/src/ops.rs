@@ -188,8 +188,8 @@ pub struct Operation {
     pub derivative: DerivativeRule,
     /// Range rule.
     pub(crate) range: range::RangeRule,
-    /// WGSL text with `{0}`, `{1}` … for operands, `{d}` for the data, `{first}` and `{count}` for
-    /// the pieces of the curve.
+    /// WGSL text with `{0}`, `{1}` … for operands, `{d}` for the data, `{curve}` for
+    /// where the curve is.
     pub wgsl: &'static str,
     /// What follows the WGSL value to read each result: nothing for operations with one.
     pub wgsl_extract: &'static [&'static str],

@@ -23,6 +23,7 @@
 //! name, everything is in parentheses, and there is neither a branch (but for the ends of loops) nor
 //! `&&` or `||`: drivers take exponential time over those, and Tint refuses what naga lets pass.
 
+mod batch;
 mod expr;
 pub mod layout;
 pub mod names;
@@ -234,7 +235,8 @@ fn definitions(rows: &SceneRows<'_>, all: &[Definition<'_>], user: &str) -> Stri
     // Arrays cannot be empty.
     let curves = format!("const VOL_CURVES: u32 = {}u;\n\n", rows.curve_count.max(1));
     let curves = if prelude.contains("VOL_CURVES") { &curves } else { "" };
-    format!("{curves}{prelude}\n{body}")
+    let curve = if body.contains("vol_curve(") { rows.curve_function() } else { String::new() };
+    format!("{curves}{prelude}{curve}\n{body}")
 }
 
 fn evaluation_entry(id: FunctionId, function: &Function) -> String {
@@ -358,6 +360,38 @@ mod tests {
         let order = ["v2_n1: f32 = select(v2_s1, v2_s0, v2_2)", "v2_s0 = v2_n0;", "let v3: f32 = v2_s1;"];
         let places = order.map(|part| few.find(part));
         assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{few}");
+    }
+
+    #[test]
+    fn the_text_of_tubes_does_not_grow_with_their_number() {
+        // Radii from the frame, from a list, and curves in any order; the points are the same or of each tube.
+        let with = |curves: &[u32], own_points: bool| {
+            let mut body =
+                "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = constant 9\n".to_owned();
+            for (i, curve) in curves.iter().enumerate() {
+                let v = 4 + 6 * i;
+                let [shift, x, search, distance, field, least] = [0, 1, 2, 3, 4, 5].map(|offset| v + offset);
+                let point = if own_points { x } else { 0 };
+                let before = if i == 0 { 3 } else { v - 1 };
+                body += &format!(
+                    "%{shift} = uniform {}\n%{x} = add %0 %{shift}\n%{search} = closest[{curve}] %{point} %1 %2\n\
+                     %{distance} = extract %{search} 5\n%{field} = sub %{distance} %{shift}\n\
+                     %{least} = min %{before} %{field}\n",
+                    i % 4
+                );
+            }
+            let body = format!("{body}return %{}\n}}", 3 + 6 * curves.len());
+            let module = module(vec![text::parse_function(&body).expect("well-formed text")]);
+            evaluation(&module, &SceneRows::new(&module, 9, 9), FunctionId(0)).expect("naga accepts it").text
+        };
+        for curves in [&[0, 1, 2, 3][..], &[3, 2, 1], &[5, 1, 7, 3, 0, 2], &[0, 1]] {
+            for own_points in [false, true] {
+                let text = with(curves, own_points);
+                assert_eq!(text.matches("= vol_closest(").count(), 1, "{text}");
+            }
+        }
+        assert_eq!(with(&[4, 4, 4], true).matches("= vol_closest(").count(), 1, "one curve in three places");
+        assert!(!with(&[6], false).contains("vol_curve("), "one tube is written as it is");
     }
 
     #[test]

@@ -48,7 +48,7 @@ pub(super) const CLOSEST: Operation = Operation {
     error: |x, e, _, context| errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: along,
     range: range::unknown,
-    wgsl: "vol_closest(vec3f({0}, {1}, {2}), VolCurve({first}, {count}, {d}u))",
+    wgsl: "vol_closest(vec3f({0}, {1}, {2}), {curve})",
     wgsl_extract: &[".t", ".arc_length", ".curve_length", ".x", ".y", ".distance", ".overshoot", ".stretch"],
     domain: &[(-4.0, 4.0); 3],
 };
@@ -69,7 +69,7 @@ pub(super) const CLOSEST_GRADIENT: Operation = Operation {
     error: |x, e, _, context| movement_errors([0, 1, 2].map(|i| operand(x, e, i)), segments(context)),
     derivative: none,
     range: range::unknown,
-    wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), VolCurve({first}, {count}, {d}u))",
+    wgsl: "vol_closest_gradient(vec3f({0}, {1}, {2}), {curve})",
     wgsl_extract: &[
         ".direction.x",
         ".direction.y",

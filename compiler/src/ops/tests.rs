@@ -39,7 +39,7 @@ fn table_is_in_order_and_complete() {
         assert!(row.results.len() <= MAX_RESULTS);
         let unread = (0..row.args.len()).find(|i| !row.wgsl.contains(&format!("{{{i}}}")));
         assert_eq!(unread, None, "{}", row.name);
-        let placed = row.wgsl.contains("{d}") || row.wgsl.contains("{first}");
+        let placed = row.wgsl.contains("{d}") || row.wgsl.contains("{curve}");
         assert_eq!(row.has_data, placed, "{}", row.name);
     }
     assert!(by_name("extract").is_none());

@@ -25,6 +25,9 @@
 //! }                         v7_go = v7_3; }
 //! ```
 
+mod turns;
+
+use super::batch::{Member, Schedule, Step};
 use super::layout::SceneRows;
 use super::names;
 use crate::ir::{Function, Inst, ValueId};
@@ -50,7 +53,16 @@ pub(super) fn function(
         names::output_type(function.outputs.len()),
     );
     let inputs: Vec<String> = (0..function.inputs).map(|i| format!("x{i}")).collect();
-    let writer = Writer { function, rows, comments, inputs, prefix: "v".to_owned(), indent: "  ".to_owned() };
+    let writer = Writer {
+        function,
+        schedule: &Schedule::of(function),
+        inside: None,
+        rows,
+        comments,
+        inputs,
+        prefix: "v".to_owned(),
+        indent: "  ".to_owned(),
+    };
     writer.statements(&mut text);
     let outputs: Vec<String> = function.outputs.iter().map(|&v| writer.name(v)).collect();
     let _ = writeln!(text, "  return {};\n}}\n", names::output_value(&outputs));
@@ -59,6 +71,9 @@ pub(super) fn function(
 
 struct Writer<'a> {
     function: &'a Function,
+    schedule: &'a Schedule,
+    /// The batch whose loop is written.
+    inside: Option<usize>,
     rows: &'a SceneRows<'a>,
     /// A comment for each instruction, where there is something to say.
     comments: &'a [Option<String>],
@@ -69,9 +84,14 @@ struct Writer<'a> {
     indent: String,
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
     /// What a value is called: inputs keep the name of their parameter.
     fn name(&self, value: ValueId) -> String {
+        if let Some(member) = self.schedule.member(value)
+            && self.inside != Some(member.batch)
+        {
+            return format!("{}[{}]", self.array(member.batch, member.row, None), member.turn);
+        }
         match self.function.insts[value.index()] {
             Inst::Input(index) => self.inputs[index as usize].clone(),
             Inst::Constant(_)
@@ -87,29 +107,39 @@ impl Writer<'_> {
 
     fn statements(&self, text: &mut String) {
         let mut last = None;
-        for (i, inst) in self.function.insts.iter().enumerate() {
-            let comment = self.comments.get(i).and_then(Option::as_deref);
-            // Neighbours of one line share its comment; a number stands where it was first written, which may be anywhere.
-            if let (Some(comment), Inst::Apply { .. } | Inst::Loop { .. }) = (comment, inst)
-                && last != Some(comment)
-            {
-                let _ = writeln!(text, "{}// {comment}", self.indent);
-                last = Some(comment);
+        for step in &self.schedule.steps {
+            match *step {
+                Step::One(value) => self.commented(text, value, &mut last),
+                Step::Batch(index) => self.batch(text, index),
             }
-            self.statement(text, ValueId(i as u32), inst);
         }
     }
 
+    /// An instruction with a comment where it comes from.
+    fn commented(&self, text: &mut String, value: ValueId, last: &mut Option<&'a str>) {
+        let inst = &self.function.insts[value.index()];
+        let comment = self.comments.get(value.index()).and_then(Option::as_deref);
+        // Neighbours of one line share its comment; a number stands where it was first written, which may be anywhere.
+        if let (Some(comment), Inst::Apply { .. } | Inst::Loop { .. }) = (comment, inst)
+            && *last != Some(comment)
+        {
+            let _ = writeln!(text, "{}// {comment}", self.indent);
+            *last = Some(comment);
+        }
+        self.statement(text, value, inst);
+    }
+
     fn statement(&self, text: &mut String, value: ValueId, inst: &Inst) {
+        let operands = self.operands(value, inst);
         let expression = match inst {
             Inst::Input(_) => return,
             Inst::Constant(number) => names::literal(rounded(number.0)),
             Inst::Boolean(truth) => truth.to_string(),
             Inst::Uniform(index) => self.rows.uniforms.word(u64::from(*index)),
-            Inst::Apply { op, data, args } => self.operation(ops::operation(*op), *data, args),
-            Inst::Extract(tuple, index) => self.extract(*tuple, *index),
-            Inst::Loop { most, body, args } => {
-                return self.repeat(text, &self.name(value), *most, body, args);
+            Inst::Apply { op, .. } => self.operation(ops::operation(*op), value, &operands),
+            Inst::Extract(tuple, part) => self.extract(*tuple, *part, &operands[0]),
+            Inst::Loop { most, body, .. } => {
+                return self.repeat(text, &self.name(value), *most, body, operands);
             }
         };
         let (indent, name) = (&self.indent, self.name(value));
@@ -119,10 +149,20 @@ impl Writer<'_> {
         };
     }
 
+    /// What the operands of an instruction are called: in the loop of a batch some are its inputs.
+    fn operands(&self, value: ValueId, inst: &Inst) -> Vec<String> {
+        let input = |operand: usize| {
+            let member = self.home(value)?;
+            let batch = &self.schedule.batches[member.batch];
+            Some(self.input(batch, batch.input(self.function, member.row, operand)?))
+        };
+        let operands = inst.operands().iter().enumerate();
+        operands.map(|(i, &operand)| input(i).unwrap_or_else(|| self.name(operand))).collect()
+    }
+
     /// A loop; its results are the variables `name_s0`, `name_s1` …
-    fn repeat(&self, text: &mut String, name: &str, most: u32, body: &Function, args: &[ValueId]) {
+    fn repeat(&self, text: &mut String, name: &str, most: u32, body: &Function, mut inputs: Vec<String>) {
         let (indent, state) = (&self.indent, body.state());
-        let mut inputs: Vec<String> = args.iter().map(|&arg| self.name(arg)).collect();
         for (i, input) in inputs.iter_mut().enumerate().take(state) {
             let variable = format!("{name}_s{i}");
             let _ = writeln!(text, "{indent}var {variable}: f32 = {input};");
@@ -133,8 +173,16 @@ impl Writer<'_> {
             "{indent}var {name}_go: bool = true;\n\
              {indent}for (var {name}_i: u32 = 0u; ({name}_i < {most}u) & {name}_go; {name}_i = {name}_i + 1u) {{",
         );
-        let (prefix, indent) = (format!("{name}_"), format!("{indent}  "));
-        let inside = Writer { function: body, rows: self.rows, comments: &[], inputs, prefix, indent };
+        let inside = Writer {
+            function: body,
+            schedule: &Schedule::of(body),
+            inside: None,
+            comments: &[],
+            inputs,
+            prefix: format!("{name}_"),
+            indent: format!("{indent}  "),
+            ..*self
+        };
         inside.statements(text);
         let outputs: Vec<String> = body.outputs.iter().map(|&output| inside.name(output)).collect();
         let (indent, goes_on) = (&inside.indent, &outputs[state]);
@@ -158,25 +206,41 @@ impl Writer<'_> {
         (!tuple).then_some(ty)
     }
 
-    fn extract(&self, tuple: ValueId, index: u32) -> String {
-        let suffix = match &self.function.insts[tuple.index()] {
-            Inst::Apply { op, .. } => ops::operation(*op).wgsl_extract[index as usize].to_owned(),
-            Inst::Loop { .. } => format!("_s{index}"),
+    /// A part of a tuple that is called `name`.
+    fn extract(&self, tuple: ValueId, part: u32, name: &str) -> String {
+        match self.schedule.member(tuple) {
+            Some(member) if self.inside != Some(member.batch) => {
+                format!("{}[{}]", self.array(member.batch, member.row, Some(part)), member.turn)
+            }
+            _ => format!("{name}{}", self.suffix(tuple, part)),
+        }
+    }
+
+    /// What follows the name of a tuple to read a part.
+    fn suffix(&self, tuple: ValueId, part: u32) -> String {
+        match &self.function.insts[tuple.index()] {
+            Inst::Apply { op, .. } => ops::operation(*op).wgsl_extract[part as usize].to_owned(),
+            Inst::Loop { .. } => format!("_s{part}"),
             Inst::Constant(_) | Inst::Boolean(_) | Inst::Input(_) | Inst::Uniform(_) | Inst::Extract(..) => {
                 String::new()
             }
-        };
-        format!("{}{suffix}", self.name(tuple))
+        }
     }
 
     /// The table's text with its holes filled.
-    fn operation(&self, row: &ops::Operation, data: u32, args: &[ValueId]) -> String {
+    fn operation(&self, row: &ops::Operation, value: ValueId, operands: &[String]) -> String {
         let mut text = String::new();
         let mut rest = row.wgsl;
         while let Some((before, hole)) = rest.split_once('{') {
             let (hole, after) = hole.split_once('}').unwrap_or((hole, ""));
             text.push_str(before);
-            text.push_str(&self.hole(hole, data, args));
+            text.push_str(&match hole {
+                "d" => self.data(value).to_string(),
+                "curve" => self.curve(value),
+                operand => {
+                    operand.parse().ok().and_then(|i: usize| operands.get(i).cloned()).unwrap_or_default()
+                }
+            });
             rest = after;
         }
         text.push_str(rest);
@@ -184,15 +248,24 @@ impl Writer<'_> {
         text
     }
 
-    fn hole(&self, hole: &str, data: u32, args: &[ValueId]) -> String {
-        match hole {
-            "d" => data.to_string(),
-            "first" => self.rows.curve(data)[0].clone(),
-            "count" => self.rows.curve(data)[1].clone(),
-            operand => {
-                let operand = operand.parse::<usize>().ok().and_then(|i| args.get(i));
-                operand.map_or_else(String::new, |&value| self.name(value))
-            }
+    /// Where a value stands in the batch whose loop is written.
+    fn home(&self, value: ValueId) -> Option<Member> {
+        self.schedule.member(value).filter(|member| self.inside == Some(member.batch))
+    }
+
+    fn data(&self, value: ValueId) -> u32 {
+        if let Inst::Apply { data, .. } = &self.function.insts[value.index()] { *data } else { 0 }
+    }
+
+    /// Where the curve of an operation is.
+    fn curve(&self, value: ValueId) -> String {
+        if let Some(member) = self.home(value)
+            && let Some(number) = self.curve_of_turn(&self.schedule.batches[member.batch], member.row)
+        {
+            return format!("vol_curve({number})");
         }
+        let curve = self.data(value);
+        let [first, count] = self.rows.curve(curve);
+        format!("VolCurve({first}, {count}, {curve}u)")
     }
 }

@@ -163,6 +163,24 @@ impl<'a> SceneRows<'a> {
         [word, word + 1].map(|word| format!("bitcast<u32>({})", self.uniforms.word(word)))
     }
 
+    /// A function that tells where the curve of a number is; in a text of one frame it reads [`Self::place_row`].
+    pub(super) fn curve_function(&self) -> String {
+        let [first, count] = match self.places {
+            Some(_) => [0, 1].map(|part| format!("vol_place_word((2u * number) + {part}u)")),
+            None => [self.curve_table, self.curve_table + 1]
+                .map(|start| format!("bitcast<u32>(vol_uniform_word({start}u + (2u * number)))")),
+        };
+        format!(
+            "\nfn vol_curve(number: u32) -> VolCurve {{\n    return VolCurve({first}, {count}, number);\n}}\n"
+        )
+    }
+
+    /// First piece and number of pieces of each curve, one after the other, in a text of one frame.
+    pub(super) fn place_row(&self) -> (Row, Vec<u32>) {
+        let words: Vec<u32> = self.places.unwrap_or_default().iter().flatten().copied().collect();
+        (Row { scalar: "u32", ..Row::new(0, "vol_places", words.len()) }, words)
+    }
+
     pub(super) fn of(program: &Program) -> Self {
         let segments: usize = program.curves.iter().map(|curve| curve.segments.len()).sum();
         // A segment is cut at its vertex, and an empty curve is a point.

@@ -198,11 +198,12 @@ pub(crate) fn library_text(
     numbers.truncate(numbers.iter().rposition(|&word| word != 0).map_or(0, |last| last + 1));
     text += &frame_row(program).constants(&numbers, keyword);
     text += &input_row().constants(&input_words(program, frame), keyword);
-    for part in [
-        &super::functions(program, &rows, Some(notes), &|_| true),
-        &glue(program, job.quadrature),
-        &integrator(program),
-    ] {
+    let functions = super::functions(program, &rows, Some(notes), &|_| true);
+    if functions.contains("vol_place_word(") {
+        let (row, words) = rows.place_row();
+        text += &row.constants(&words, keyword);
+    }
+    for part in [&functions, &glue(program, job.quadrature), &integrator(program)] {
         text.push('\n');
         let lines = part.lines().filter(|line| !line.contains("counted_"));
         lines.for_each(|line| text.extend([line, "\n"]));

@@ -24,7 +24,7 @@ pub(in crate::ops) const FOOT: Operation = Operation {
     error: |x, e, _, context| errors([0, 1, 2, 3, 4, 5].map(|i| operand(x, e, i)), segments(context)),
     derivative: none,
     range: range::unknown,
-    wgsl: "vol_next_foot(vec3f({0}, {1}, {2}), {3}, {4}, {5}, VolCurve({first}, {count}, {d}u))",
+    wgsl: "vol_next_foot(vec3f({0}, {1}, {2}), {3}, {4}, {5}, {curve})",
     wgsl_extract: &[".next", ".t", ".arc_length", ".x", ".y", ".distance", ".overshoot", ".stretch"],
     domain: &[(-4.0, 4.0), (-4.0, 4.0), (-4.0, 4.0), (0.0, 8.0), (0.0, 8.0), (0.0, 1.0)],
 };

@@ -10,7 +10,7 @@
 //!   %5 = sub %0 %3                  %5 = sub %0 %3
 //! ```
 //!
-//! The operations on the numbers are the same, so are the bits. Which numbers are equal by chance does not matter: each
+//! The operations on the numbers are the same, so are the bits. Numbers of curves are such numbers. Which numbers are equal by chance does not matter: each
 //! place where one is read counts by itself.
 
 use crate::frame::Frame;
@@ -37,6 +37,8 @@ pub(crate) struct Family {
     pub(crate) function: Function,
     /// The member whose places in the scene are the family's.
     pub(crate) first: FunctionId,
+    /// Operations on a curve whose number is an argument, with that argument.
+    pub(crate) curves: BTreeMap<ValueId, ValueId>,
     /// The instruction of that member which each of the family's is, but for numbers.
     pub(crate) origins: Vec<Option<usize>>,
     /// First word of its numbers in a row.
@@ -50,6 +52,8 @@ pub(crate) struct Family {
 enum Source {
     Constant(Number),
     Uniform(u32),
+    /// The number of a curve, itself.
+    Curve(u32),
 }
 
 /// The families of a program.
@@ -124,9 +128,8 @@ impl Families {
             }
             self.of.extend(members.iter().map(|member| (member.function, self.all.len())));
             let first = members[0].function;
-            let (function, origins) =
-                form.written(program.module.function(first), &members[0].sources, &places);
-            self.all.push(Family { function, first, origins, at: self.row, numbers: places.numbers.len() });
+            let written = form.written(program.module.function(first), &members[0].sources, &places);
+            self.all.push(Family { first, at: self.row, ..written });
             width = width.max(places.numbers.len());
         }
         width
@@ -142,6 +145,7 @@ impl Families {
         let word = |source: &Option<Source>| match *source {
             Some(Source::Constant(Number(number))) => rounded(number),
             Some(Source::Uniform(index)) => frame.uniforms_f32[index as usize],
+            Some(Source::Curve(number)) => number as f32,
             None => 0.0,
         };
         self.sources.iter().map(word).collect()
@@ -176,12 +180,6 @@ impl Form {
     fn of(function: &Function) -> (Self, Vec<Source>) {
         let (mut insts, mut sources) = (Vec::new(), Vec::new());
         let mut places: Vec<Result<ValueId, Source>> = Vec::with_capacity(function.insts.len());
-        let mut read = |places: &[Result<ValueId, Source>], value: ValueId| {
-            places[value.index()].unwrap_or_else(|source| {
-                sources.push(source);
-                NUMBER
-            })
-        };
         for inst in &function.insts {
             places.push(match inst {
                 Inst::Constant(number) => Err(Source::Constant(*number)),
@@ -191,45 +189,86 @@ impl Form {
                 | Inst::Apply { .. }
                 | Inst::Extract(..)
                 | Inst::Loop { .. } => {
-                    insts.push(inst.map_operands(|value| read(&places, value)));
+                    sources.extend(curve_of(inst).map(Source::Curve));
+                    let inst = inst.map_operands(|value| read(&places, &mut sources, value));
+                    insts.push(with_curve(inst, 0));
                     Ok(ValueId(insts.len() as u32 - 1))
                 }
             });
         }
-        let outputs = function.outputs.iter().map(|&value| read(&places, value)).collect();
+        let outputs = function.outputs.iter().map(|&value| read(&places, &mut sources, value)).collect();
         (Self { inputs: function.inputs, insts, outputs }, sources)
     }
 
-    /// The function with arguments for those numbers in which members differ, and the instruction of the
-    /// first member that each of its own is.
-    fn written(
-        &self,
-        first: &Function,
-        sources: &[Source],
-        places: &Places,
-    ) -> (Function, Vec<Option<usize>>) {
-        let number = |&place: &usize| match places.numbers.iter().position(|&own| own == place) {
-            Some(argument) => Inst::Input(self.inputs + argument as u32),
-            None => match sources[place] {
-                Source::Constant(number) => Inst::Constant(number),
-                Source::Uniform(index) => Inst::Uniform(index),
-            },
+    /// The family of members, the first of which is given with its numbers; where its numbers lie is left open.
+    fn written(&self, first: &Function, sources: &[Source], places: &Places) -> Family {
+        let argument = |place: usize| places.numbers.iter().position(|&own| own == place);
+        let number = |&place: &usize| match (argument(place), sources[place]) {
+            (Some(argument), _) => Inst::Input(self.inputs + argument as u32),
+            (None, Source::Constant(number)) => Inst::Constant(number),
+            (None, Source::Uniform(index)) => Inst::Uniform(index),
+            (None, Source::Curve(number)) => Inst::Constant(Number(f64::from(number))),
         };
         let mut insts: Vec<Inst> = places.distinct.iter().map(number).collect();
         let numbers = insts.len() as u32;
-        let mut reads = places.which.iter();
-        let mut value = |value: ValueId| match value {
-            NUMBER => ValueId(*reads.next().expect("there is a place for each number that is read")),
-            ValueId(own) => ValueId(numbers + own),
-        };
-        insts.extend(self.insts.iter().map(|inst| inst.map_operands(&mut value)));
-        let outputs = self.outputs.iter().map(|&output| value(output)).collect();
+        let mut curves = BTreeMap::new();
+        let mut reads = places.which.iter().copied();
+        let mut next = || reads.next().expect("there is a place for each number that is read");
+        for inst in &self.insts {
+            let mut own = inst.clone();
+            if curve_of(inst).is_some() {
+                let which = next();
+                match (&insts[which as usize], sources[places.distinct[which as usize]]) {
+                    (Inst::Constant(_), Source::Curve(number)) => own = with_curve(own, number),
+                    _ => drop(curves.insert(ValueId(insts.len() as u32), ValueId(which))),
+                }
+            }
+            insts.push(own.map_operands(|value| {
+                if value == NUMBER { ValueId(next()) } else { ValueId(numbers + value.0) }
+            }));
+        }
+        let output =
+            |&value: &ValueId| if value == NUMBER { ValueId(next()) } else { ValueId(numbers + value.0) };
+        let outputs = self.outputs.iter().map(output).collect();
         let is_number = |inst: &Inst| matches!(inst, Inst::Constant(_) | Inst::Uniform(_));
         let others = first.insts.iter().enumerate().filter(|(_, inst)| !is_number(inst));
         let origins = vec![None; numbers as usize].into_iter().chain(others.map(|(place, _)| Some(place)));
         let inputs = self.inputs + places.numbers.len() as u32;
-        (Function { name: first.name.clone(), inputs, insts, outputs }, origins.collect())
+        Family {
+            function: Function { name: first.name.clone(), inputs, insts, outputs },
+            first: FunctionId(0),
+            curves,
+            origins: origins.collect(),
+            at: 0,
+            numbers: places.numbers.len(),
+        }
     }
+}
+
+/// An operand of a form: a number goes to the list of those that are read.
+fn read(places: &[Result<ValueId, Source>], sources: &mut Vec<Source>, value: ValueId) -> ValueId {
+    places[value.index()].unwrap_or_else(|source| {
+        sources.push(source);
+        NUMBER
+    })
+}
+
+/// The number of the curve that an operation is on.
+fn curve_of(inst: &Inst) -> Option<u32> {
+    match inst {
+        Inst::Apply { op, data, .. } if op.reads_curve() => Some(*data),
+        _ => None,
+    }
+}
+
+/// The same on another curve, if it is on one.
+fn with_curve(mut inst: Inst, curve: u32) -> Inst {
+    if let Inst::Apply { op, data, .. } = &mut inst
+        && op.reads_curve()
+    {
+        *data = curve;
+    }
+    inst
 }
 
 /// The numbers that the members of a family read; those that are equal in each of them are one.
@@ -287,7 +326,7 @@ mod tests {
         let members = [first, second];
         let places = Places::of(&members);
         assert_eq!(places.numbers, [0, 1], "7 is the same in both");
-        let (written, origins) = form.written(&function, &members[0].sources, &places);
+        let Family { function: written, origins, .. } = form.written(&function, &members[0].sources, &places);
         assert_eq!(
             text::print_function(&written),
             "fn f(4) {\n  %0 = input 2\n  %1 = input 3\n  %2 = constant 7.0\n  %3 = input 0\n  %4 = input 1\n  \

@@ -100,6 +100,12 @@ impl Schedule {
         new
     }
 
+    /// Each instruction by itself.
+    pub(super) fn plain(function: &Function) -> Self {
+        let steps = (0..function.insts.len() as u32).map(|value| Step::One(ValueId(value))).collect();
+        Self { steps, ..Self::default() }
+    }
+
     /// Where a value stands, if it is in a batch.
     pub(super) fn member(&self, value: ValueId) -> Option<Member> {
         self.members.get(&value).copied()

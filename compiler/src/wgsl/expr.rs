@@ -29,36 +29,33 @@ mod turns;
 
 use super::batch::{Member, Schedule, Step};
 use super::layout::SceneRows;
-use super::names;
+use super::{Definition, names};
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::{self, Ty};
 use crate::tape::rounded;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// Text of function `index`.
-///
-/// * `comments`: one for each instruction, where there is something to say
-pub(super) fn function(
-    index: usize,
-    function: &Function,
-    rows: &SceneRows<'_>,
-    comments: &[Option<String>],
-) -> String {
+/// Text of a function.
+pub(super) fn function(own: &Definition<'_>, rows: &SceneRows<'_>) -> String {
+    let Definition { function, index, comments, curves } = own;
     let parameters: Vec<String> = (0..function.inputs).map(|i| format!("x{i}: f32")).collect();
     let mut text = format!(
         "// {}\nfn {}({}) -> {} {{\n",
         names::comment(&function.name),
-        names::function(index, &function.name),
+        names::function(*index, &function.name),
         parameters.join(", "),
         names::output_type(function.outputs.len()),
     );
     let inputs: Vec<String> = (0..function.inputs).map(|i| format!("x{i}")).collect();
     let writer = Writer {
         function,
-        schedule: &Schedule::of(function),
+        // Searches are put together by the numbers of their curves, which must be known.
+        schedule: &if curves.is_empty() { Schedule::of(function) } else { Schedule::plain(function) },
         inside: None,
         rows,
         comments,
+        curves,
         inputs,
         prefix: "v".to_owned(),
         indent: "  ".to_owned(),
@@ -77,6 +74,8 @@ struct Writer<'a> {
     rows: &'a SceneRows<'a>,
     /// A comment for each instruction, where there is something to say.
     comments: &'a [Option<String>],
+    /// Operations on a curve whose number is a value, with that value.
+    curves: &'a BTreeMap<ValueId, ValueId>,
     /// What the inputs are called.
     inputs: Vec<String>,
     /// What the names of values start with.
@@ -178,6 +177,7 @@ impl<'a> Writer<'a> {
             schedule: &Schedule::of(body),
             inside: None,
             comments: &[],
+            curves: &BTreeMap::new(),
             inputs,
             prefix: format!("{name}_"),
             indent: format!("{indent}  "),
@@ -263,6 +263,9 @@ impl<'a> Writer<'a> {
             && let Some(number) = self.curve_of_turn(&self.schedule.batches[member.batch], member.row)
         {
             return format!("vol_curve({number})");
+        }
+        if let Some(&number) = self.curves.get(&value) {
+            return format!("vol_curve(u32({}))", self.name(number));
         }
         let curve = self.data(value);
         let [first, count] = self.rows.curve(curve);

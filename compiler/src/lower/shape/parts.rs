@@ -18,10 +18,6 @@ impl Shape {
     /// The solids that this one is the sharp union of, moved and turned or not: as many as may stand for it,
     /// else itself alone.
     pub(crate) fn parts_to_march(self: &Rc<Self>) -> Vec<Rc<Self>> {
-        // Shaders put the closest points of all tubes of one function into one loop, which is compiled once.
-        if self.has_tube(&|_| true) {
-            return vec![Rc::clone(self)];
-        }
         let mut parts = Vec::new();
         self.collect_parts(&mut parts);
         if (FEWEST_PARTS..=MOST_PARTS).contains(&parts.len()) { parts } else { vec![Rc::clone(self)] }
@@ -91,7 +87,6 @@ mod tests {
         assert_eq!(wholes("union([for i in 0..15: sphere(1 + i)])"), parts(1));
         assert_eq!(wholes("union(balls, smooth: 0.1)"), parts(1));
         assert_eq!(wholes("union(balls).twist(20deg)"), parts(1));
-        assert_eq!(wholes("union(balls) | tube(bezier((0, 0, 0), (1, 1, 0), (2, 0, 0)), 0.1)"), parts(1));
         assert_eq!(wholes("union(balls) - sphere(1)"), parts(1));
         assert_eq!(wholes("union(balls) | (union(balls) - sphere(1))"), parts(17));
     }

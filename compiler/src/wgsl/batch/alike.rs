@@ -7,7 +7,6 @@
 //! could have been chosen better costs a number from a table, never a wrong value.
 
 use crate::ir::{Function, Inst, ValueId};
-use crate::ops::Op;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A point and the number of a curve.
@@ -147,7 +146,7 @@ fn paired(
 fn same_kind(a: &Inst, b: &Inst) -> bool {
     match (a, b) {
         (Inst::Apply { op, data, .. }, Inst::Apply { op: other, data: others, .. }) => {
-            op == other && (data == others || takes_curve(*op))
+            op == other && (data == others || op.reads_curve())
         }
         (Inst::Extract(_, part), Inst::Extract(_, other)) => part == other,
         (Inst::Loop { most, body, args }, Inst::Loop { most: others, body: other, args: more }) => {
@@ -155,8 +154,4 @@ fn same_kind(a: &Inst, b: &Inst) -> bool {
         }
         _ => false,
     }
-}
-
-fn takes_curve(op: Op) -> bool {
-    matches!(op, Op::Closest | Op::ClosestGradient | Op::Foot)
 }

@@ -91,6 +91,28 @@ impl<R: Real> Met<R> {
         };
         answers.chunk_by(|a, b| a.index == b.index).map(met).collect()
     }
+
+    /// Keeps the parts that a walker is in or comes to; notes which walkers are in this solid's box, and how far the
+    /// others are from it.
+    fn keep_ahead(&mut self, walkers: &[Walker<R>], all: &mut [Near<R>], here: &mut Vec<usize>) {
+        let mut which = 0;
+        self.parts.retain(|&(ray, span)| {
+            while walkers.get(which).is_some_and(|walker| walker.ray < ray) {
+                which += 1;
+            }
+            let Some(t) = walkers.get(which).filter(|walker| walker.ray == ray).map(|walker| walker.t) else {
+                return false;
+            };
+            let near = &mut all[which];
+            if t < span.entry {
+                near.gap = near.gap.min(span.entry - t);
+            } else if t <= span.exit {
+                near.rest = near.rest.max(span.exit - t);
+                here.push(which);
+            }
+            t <= span.exit
+        });
+    }
 }
 
 /// Where a ray meets a solid.
@@ -172,32 +194,23 @@ impl<'a, F: Fields> Integrator<'a, F> {
         Met::of(&self.scene.boxes_met(rays))
     }
 
-    /// Looks around from every walker.
+    /// Looks around from every walker; they are in the order of their rays. Parts of rays that no walker is before or in
+    /// any more are forgotten, so that a few that walk on cost what a few cost.
     pub(crate) fn nearest(
         &mut self,
         rays: &[Ray<F::Real>],
-        all_met: &[Met<F::Real>],
+        all_met: &mut Vec<Met<F::Real>>,
         walkers: &[Walker<F::Real>],
     ) -> Vec<Near<F::Real>> {
         let far = F::Real::from_f32(FAR);
         let mut all =
             vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
         let scene = self.scene;
-        let walker_on = by_ray(rays.len(), walkers.iter().map(|walker| walker.ray));
-        for met in all_met {
+        let mut here = Vec::with_capacity(walkers.len());
+        for met in &mut *all_met {
             let solid = &scene.solids[met.solid];
-            // Find the walkers in this solid's box, and how far the others are from it.
-            let mut here = Vec::with_capacity(met.parts.len());
-            for &(ray, span) in &met.parts {
-                let Some(which) = walker_on[ray] else { continue };
-                let (t, near) = (walkers[which].t, &mut all[which]);
-                if t < span.entry {
-                    near.gap = near.gap.min(span.entry - t);
-                } else if t <= span.exit {
-                    near.rest = near.rest.max(span.exit - t);
-                    here.push(which);
-                }
-            }
+            here.clear();
+            met.keep_ahead(walkers, &mut all, &mut here);
             if here.is_empty() {
                 continue;
             }
@@ -215,13 +228,14 @@ impl<'a, F: Fields> Integrator<'a, F> {
                 Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
             };
             self.shorten(solid, ahead, &mut safe);
-            for (which, safe) in here.into_iter().zip(safe) {
+            for (&which, safe) in here.iter().zip(safe) {
                 if safe < all[which].distance {
                     all[which].distance = safe;
                     all[which].solid = met.solid;
                 }
             }
         }
+        all_met.retain(|met| !met.parts.is_empty());
         all
     }
 
@@ -230,11 +244,11 @@ impl<'a, F: Fields> Integrator<'a, F> {
         if self.scene.solids.is_empty() {
             return Vec::new();
         }
-        let met = self.met_from_the_eye(rays);
+        let mut met = self.met_from_the_eye(rays);
         let mut walkers: Vec<_> = start(rays.len());
         let mut hits = Vec::new();
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &met, &walkers);
+            let near = self.nearest(rays, &mut met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 // Stop inside a solid; on the last step also where it would have been near enough.
@@ -398,6 +412,11 @@ pub(super) fn by_ray(count: usize, walking: impl Iterator<Item = usize>) -> Vec<
 /// All rays at their origins.
 pub(crate) fn start<R: Real>(rays: usize) -> Vec<Walker<R>> {
     (0..rays).map(|ray| Walker { ray, t: R::ZERO, from: R::ZERO }).collect()
+}
+
+/// All rays at some distances from their origins.
+pub(super) fn started<R: Real>(distances: &[R]) -> Vec<Walker<R>> {
+    distances.iter().enumerate().map(|(ray, &t)| Walker { ray, t, from: t }).collect()
 }
 
 /// The place of a hit, its normal and how exact it is.

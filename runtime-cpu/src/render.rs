@@ -23,6 +23,7 @@
 //! In f32 each operation is rounded by itself, in an order that neither threads nor batches change;
 //! everything is finite, and what is skipped (boxes, zero scattering) adds exactly 0.
 
+mod beam;
 mod box_tree;
 mod camera;
 mod chord;
@@ -42,6 +43,7 @@ mod medium;
 mod memory;
 mod method;
 mod monte_carlo;
+mod near;
 mod occlusion;
 mod panel;
 mod penumbra;
@@ -59,7 +61,7 @@ mod styled;
 mod surface;
 mod survey;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod tube_axis;
 
 pub use crate::interp::meter::{FunctionCost, PartCost};
@@ -72,8 +74,11 @@ pub use pilot::{StepChoice, choose_step, least_step};
 pub use profile::{Profile, profile};
 pub use spread::spread_pixels;
 
-pub(crate) use camera::{Ray, camera_ray};
+pub(crate) use camera::{FAR, Ray, camera_ray};
 pub(crate) use fields::Batch;
+pub(crate) use filled_grids::filling_bytes;
+#[cfg(test)]
+pub(crate) use light_grid::Grid as LightDepths;
 pub(crate) use light_grid::fill as fill_light_grid;
 pub(crate) use scene::{Batches, Integrator, Scene};
 pub(crate) use shadow::ShadowRay;

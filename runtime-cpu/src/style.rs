@@ -19,8 +19,10 @@ mod occluders;
 mod shadow_map;
 mod slices;
 mod stages;
+mod trace;
 mod transfer;
 
+pub(crate) use light_map::most_bytes;
 pub use light_map::{FitReport, FittedMap};
 pub use stages::{StageTimes, closing_times, heterogeneity, stage_times};
 pub use transfer::Picture;
@@ -72,8 +74,7 @@ pub fn prepare(
     let tapes = Tapes::of_frame(program, frame);
     let bounds = bounded(&lit, &frame.bounds);
     let step = bounds.diagonal() / STEPS;
-    let (quadrature, sampling) = (Quadrature::Midpoint, Sampling::CENTRE);
-    let job = Job { size, step, shadow_step: SHADOW_STEP * step, quadrature, sampling };
+    let job = job(size, step, SHADOW_STEP * step);
     let stage = Stage { program, frame, job: &job, tapes: &tapes, bounds };
     for style in &frame.styles {
         let hiders = stage.hiders(style);
@@ -105,8 +106,7 @@ pub fn prepare(
 #[must_use]
 pub fn shadow_maps(program: &Program, frame: &Frame, size: [u32; 2]) -> Vec<(String, Image)> {
     let Some(lit) = lit_bounds(frame) else { return Vec::new() };
-    let (quadrature, sampling) = (Quadrature::Midpoint, Sampling::CENTRE);
-    let job = Job { size, step: 1.0, shadow_step: 1.0, quadrature, sampling };
+    let job = job(size, 1.0, 1.0);
     let tapes = Tapes::of_frame(program, frame);
     let stage = Stage { program, frame, job: &job, tapes: &tapes, bounds: bounded(&lit, &frame.bounds) };
     let mapped = frame.styles.iter().filter(|style| style.shafts == Shafts::Mapped);
@@ -181,6 +181,11 @@ impl Stage<'_> {
         let along = if depth < NO_DEPTH { (f64::from(depth) - range[0]) * range[1] } else { 1.0 };
         Some([f64::from(visible), along.clamp(0.0, 1.0)])
     }
+}
+
+/// What styles are prepared for: a ray through the middle of each pixel of a picture.
+fn job(size: [u32; 2], step: f32, shadow_step: f32) -> Job {
+    Job { size, step, shadow_step, quadrature: Quadrature::Midpoint, sampling: Sampling::CENTRE }
 }
 
 /// The ray from the eye through a point, if that is in the picture.

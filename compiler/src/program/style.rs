@@ -5,6 +5,9 @@
 use crate::ir::FunctionId;
 use vol_language::source::Span;
 
+/// Most texels of a kernel that changes a shadow map.
+pub const MOST_KERNEL: f64 = 8192.0;
+
 /// How the light of one distant lamp that media scatter is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style<N> {

@@ -99,10 +99,14 @@ impl FilledGrids {
 
     /// Counts what is there while one more grid is filled. Those of the frame may be gone from here.
     fn count_bytes(&mut self, layout: &LightGrid) {
-        let [rows, more, points] = layout.counts.map(|count| count as usize);
         let kept = 2 * size_of::<f32>() * self.words();
-        let at_work = rayon::current_num_threads() * Batches::DEFAULT.rays * points * PER_POINT;
-        let bytes = kept + 2 * PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work;
-        self.most_bytes = self.most_bytes.max(bytes);
+        self.most_bytes = self.most_bytes.max(kept + filling_bytes(layout));
     }
+}
+
+/// Most bytes of a grid while it is filled.
+pub(crate) fn filling_bytes(layout: &LightGrid) -> usize {
+    let [rows, more, points] = layout.counts.map(|count| count as usize);
+    let at_work = rayon::current_num_threads() * Batches::DEFAULT.rays * points * PER_POINT;
+    2 * PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work
 }

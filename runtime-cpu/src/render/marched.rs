@@ -14,9 +14,10 @@
 
 use super::camera::{FAR, Ray, Span, slab};
 use super::fields::Fields;
+use super::near::{Met, Walker};
 use super::scene::{Integrator, Stride};
 use super::styled::Cell;
-use super::surface::{MAX_STEPS, Met, Walker, stride};
+use super::surface::{MAX_STEPS, stride};
 use crate::real::{Real, Vec3};
 
 /// Halvings by which an edge of a shadow is found.
@@ -169,12 +170,12 @@ impl<F: Fields> Integrator<'_, F> {
         if self.scene.solids.is_empty() {
             return margins;
         }
-        let met = self.met_nearby(rays, reach);
+        let mut met = self.met_nearby(rays, reach);
         let mut deep = vec![0; rays.len()];
         let mut walkers: Vec<_> =
             (0..rays.len()).map(|ray| Walker { ray, t: F::Real::ZERO, from: F::Real::ZERO }).collect();
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &met, &walkers);
+            let near = self.nearest(rays, &mut met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 let ray = walker.ray;

@@ -76,8 +76,10 @@ pub fn memory_bound(
         + TILE
         + THREAD;
     let local = if frame.skips.has(Skip::Tapes) { local::most_bytes(module, frame, threads) } else { 0 };
+    // The grid of a light map is gone before those of lights are filled, but an allocator may keep its pages.
+    let grids = filled.most_bytes() + crate::style::most_bytes(frame);
     let picture = PER_PIXEL as u64 * u64::from(job.size[0]) * u64::from(job.size[1]);
-    picture + (BASE + scene + local + threads * thread + filled.most_bytes()) as u64
+    picture + (BASE + scene + local + threads * thread + grids) as u64
 }
 
 /// Instructions of a function, those of its loops included.

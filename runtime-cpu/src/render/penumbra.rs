@@ -18,10 +18,11 @@
 
 use super::camera::{FAR, Ray, Span, slab};
 use super::fields::Fields;
+use super::near::Met;
 use super::scene::{Integrator, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
-use super::surface::{EPSILON, MAX_STEPS, Met, by_ray};
+use super::surface::{EPSILON, MAX_STEPS, by_ray};
 use crate::real::{Real, Vec3, add, length, scale, sub};
 use std::f32::consts::FRAC_1_SQRT_2;
 

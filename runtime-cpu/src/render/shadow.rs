@@ -7,10 +7,11 @@
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};
 use super::fields::{Fields, colors};
+use super::near::{Walker, start, started};
 use super::panel::Panels;
 use super::penumbra::Cone;
 use super::scene::{Integrator, Light};
-use super::surface::{MAX_STEPS, Walker, start};
+use super::surface::MAX_STEPS;
 use crate::real::{Real, Vec3, add, scale, smallest, splat};
 use vol_compiler::frame::Quadrature;
 
@@ -119,10 +120,10 @@ impl<F: Fields> Integrator<'_, F> {
             return blocked;
         }
         let paths: Vec<_> = rays.iter().map(|ray| ray.ray).collect();
-        let met = self.met_from_outside(&paths);
+        let mut met = self.met_from_outside(&paths);
         let mut walkers: Vec<_> = start(rays.len());
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(&paths, &met, &walkers);
+            let near = self.nearest(&paths, &mut met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
@@ -144,18 +145,20 @@ impl<F: Fields> Integrator<'_, F> {
         blocked
     }
 
-    /// Distance at which each ray first enters a solid from outside, up to a length; steps are no shorter than `least`.
+    /// Distance at which each ray first enters a solid from outside, up to a length, where it enters none up to `starts`;
+    /// steps are no shorter than `least`.
     pub(crate) fn entries(
         &mut self,
         rays: &[Ray<F::Real>],
+        starts: &[F::Real],
         length: F::Real,
         least: F::Real,
     ) -> Vec<Option<F::Real>> {
         let mut entries = vec![None; rays.len()];
-        let met = self.met_from_outside(rays);
-        let mut walkers: Vec<_> = start(rays.len());
+        let mut met = self.met_from_outside(rays);
+        let mut walkers = started(starts);
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &met, &walkers);
+            let near = self.nearest(rays, &mut met, &walkers);
             let mut left = Vec::with_capacity(walkers.len());
             for (walker, near) in walkers.into_iter().zip(near) {
                 if near.distance < F::Real::ZERO {

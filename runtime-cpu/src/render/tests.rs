@@ -1,9 +1,10 @@
 //! Pictures with known answers, and what must not change a picture.
 
+mod beams;
 mod light_grids;
 mod media;
 mod reference;
 mod same;
 mod sampling;
 mod solids;
-mod support;
+pub(crate) mod support;

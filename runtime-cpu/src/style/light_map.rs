@@ -8,7 +8,7 @@
 
 use super::least_squares::{Fit, Transport, fit as solve};
 use super::{Hiders, Stage, shadow_map};
-use crate::render::{Batch, Batches, Integrator, Scene, camera_ray, fill_light_grid};
+use crate::render::{Batch, Batches, Integrator, Scene, camera_ray, fill_light_grid, filling_bytes};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -186,12 +186,24 @@ fn for_each_pixel(stroke: &Stroke<f64>, size: [u32; 2], mut call: impl FnMut([u3
 
 /// Optical depths towards the light, where a grid can hold them.
 fn depths(stage: &Stage<'_>, light: &LightFrame) -> Option<Arc<LightGrid>> {
-    let bounds = stage.frame.media_bounds()?;
-    let layout = LightGrid::layout(light, &bounds, INTERVALS)?;
+    let (layout, bounds) = depths_layout(stage.frame, light)?;
     let job = Job { shadow_step: bounds.diagonal() / INTERVALS as f32, ..*stage.job };
     let scene = Scene::new(stage.frame, &job);
     let (grid, _) = fill_light_grid(layout, &scene, || Batch::new(stage.tapes, stage.frame))?;
     Some(Arc::new(grid))
+}
+
+/// Where the points of that grid are, and the box around all media.
+fn depths_layout(frame: &Frame, light: &LightFrame) -> Option<(LightGrid, Aabb)> {
+    let bounds = frame.media_bounds()?;
+    Some((LightGrid::layout(light, &bounds, INTERVALS)?, bounds))
+}
+
+/// Most bytes of the grids of depths of a frame's light maps: there is one at a time.
+pub(crate) fn most_bytes(frame: &Frame) -> usize {
+    let fitted = frame.styles.iter().filter(|style| style.light_map.is_some());
+    let layouts = fitted.filter_map(|style| depths_layout(frame, &frame.lights[style.light]));
+    layouts.map(|(layout, _)| filling_bytes(&layout)).max().unwrap_or(0)
 }
 
 /// The frame from a camera, its light with the style's occluders and nothing else of the style.
@@ -242,4 +254,81 @@ fn texel(table: &LightMapTable, point: [f32; 3]) -> u32 {
         place.round().clamp(0.0, last) as u32
     });
     y * table.size + x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interp::Tapes;
+    use crate::render::tests::support::{Gas, World};
+    use crate::render::{FilledGrids, LightDepths, memory_bound};
+    use vol_compiler::program::Lighting;
+
+    /// Half the sides of a box of gas, and its extinction.
+    const HALF: [f64; 3] = [1.0, 0.6, 0.8];
+    const EXTINCTION: f64 = 1.5;
+
+    fn box_of_gas(sun: [f32; 3]) -> World {
+        let mut world = World::new([0.0, 0.0, 4.0], 0.4);
+        world.medium(Gas::uniform(HALF, [0.5; 3], [EXTINCTION; 3], [0.0; 3], Lighting::Shadowed));
+        world.sun(sun, [1.0; 3]);
+        world
+    }
+
+    /// Length of the way from a point of the box towards a light.
+    fn way_out(point: [f64; 3], toward: [f32; 3]) -> f64 {
+        let side = |axis: usize| {
+            let along = f64::from(toward[axis]);
+            if along == 0.0 { f64::INFINITY } else { (along.signum() * HALF[axis] - point[axis]) / along }
+        };
+        (0..3).map(side).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn depths_are_those_of_a_box() {
+        for sun in [[0.0, 1.0, 0.0], [0.48, 0.8, 0.36], [-0.6, 0.0, 0.8]] {
+            let world = box_of_gas(sun);
+            let (job, tapes) = (crate::style::job([64; 2], 0.01, 0.1), Tapes::new(&world.program));
+            let (program, frame) = (&world.program, &world.frame);
+            let bounds = frame.media_bounds().expect("a medium");
+            let stage = Stage { program, frame, job: &job, tapes: &tapes, bounds };
+            let grid = depths(&stage, &frame.lights[0]).expect("a bounded medium");
+            let grid = LightDepths::<f64>::new(&grid);
+            let (mut sum, mut most, mut count): (f64, f64, f64) = (0.0, 0.0, 0.0);
+            for index in 0..1000 {
+                let share = |axis: u32| f64::from(index / 10_u32.pow(axis) % 10) / 9.0 * 1.9 - 0.95;
+                let point = [0, 1, 2].map(|axis: u32| share(axis) * HALF[axis as usize]);
+                let off = (grid.depth(point)[0] - EXTINCTION * way_out(point, sun)).abs();
+                (sum, most, count) = (sum + off * off, most.max(off), count + 1.0);
+            }
+            let rms = (sum / count).sqrt();
+            assert!(most < 1.5e-2 && rms < 1.5e-3, "{most:.1e}, rms {rms:.1e} for {sun:?}");
+        }
+    }
+
+    #[test]
+    fn depths_count_as_memory() {
+        let mut world = box_of_gas([0.0, 1.0, 0.0]);
+        let job = crate::style::job([64; 2], 0.01, 0.1);
+        let bound =
+            |world: &World| memory_bound(&world.program, &world.frame, &job, 1, &FilledGrids::default());
+        let before = bound(&world);
+        world.frame.styles.push(Style {
+            name: "painted".to_owned(),
+            light: 0,
+            shadow_map: 64,
+            shafts: Default::default(),
+            operators: Vec::new(),
+            transfer: None,
+            depth_range: None,
+            light_map: Some(LightMap { size: 16, strokes: Vec::new() }),
+            heterogeneity: None,
+            enabled: 1.0,
+            span: Default::default(),
+        });
+        let (layout, _) = depths_layout(&world.frame, &world.frame.lights[0]).expect("a bounded medium");
+        assert_eq!(layout.counts.iter().max(), Some(&(INTERVALS + 1)));
+        let kept = 3 * size_of::<f32>() * layout.points();
+        assert!(bound(&world) - before >= kept as u64, "{} of {kept} bytes", bound(&world) - before);
+    }
 }

@@ -13,10 +13,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use vol_compiler::frame::Frame;
 use vol_compiler::frame::styled::Slices;
-use vol_compiler::program::style::{Operator, OperatorKind, Style};
-
-/// Largest kernel in texels.
-const MAX_KERNEL: f64 = 8192.0;
+use vol_compiler::program::style::{MOST_KERNEL, Operator, OperatorKind, Style};
 
 /// The shadow map of a style before any operator, whoever looks at it.
 pub(super) struct Traced {
@@ -115,7 +112,7 @@ fn operate(operator: &Operator<f64>, layers: &mut Vec<Layer>, layout: &Layout, f
     }
     let objects = concerned.iter().flat_map(|layer| layer.objects.iter().cloned()).collect();
     // A param or the time may have set anything.
-    let texels = |length: f64| if length.is_finite() { length.clamp(0.0, MAX_KERNEL) } else { 0.0 };
+    let texels = |length: f64| if length.is_finite() { length.clamp(0.0, MOST_KERNEL) } else { 0.0 };
     let shape = match &operator.kind {
         OperatorKind::CloseDisk(diameter) => {
             let mut heights = joined(concerned, |layer| layer.into_map(fan));

@@ -1,13 +1,11 @@
 //! Heights of what a distant light meets first, on a square map across it.
 //!
 //! The map covers what media and solids have in common as the light sees them: elsewhere nothing hides it from a
-//! medium, unless solids are to grow. Each texel is one ray of the light through its middle.
+//! medium, unless solids are to grow. Each texel is one ray of the light through its middle
+//! ([`super::trace`]).
 
-use crate::interp::Tapes;
-use crate::real::{Vec3, add, dot, scale, vector};
-use crate::render::{Batch, Batches, Integrator, Ray, Scene, ShadowRay};
-use rayon::prelude::*;
-use vol_compiler::frame::{Aabb, Frame, Image, Job, LightFrame, Pixel};
+use crate::real::{Vec3, dot, scale, vector};
+use vol_compiler::frame::{Aabb, Frame, Image, LightFrame, Pixel};
 use vol_compiler::wgsl::render::padded;
 
 /// No solid.
@@ -15,12 +13,6 @@ pub(super) const NOTHING: f32 = f32::NEG_INFINITY;
 
 /// A box that reaches further than this has no end.
 const ENDLESS: f32 = 1e5;
-
-/// Rays of the light walk at least this part of a texel at a time: nothing thinner is sure to be met.
-const LEAST_STEP: f32 = 0.05;
-
-/// Sides of the square blocks of texels whose rays walk together.
-const BLOCK: usize = 8;
 
 /// Where the texels of a map are. Coordinates are `(u, v)` across the light and `w` towards it.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +26,7 @@ pub(super) struct Layout {
     /// Texels along each side.
     pub(super) size: usize,
     /// Height above all bounded solids and media, and below all media.
-    heights: [f64; 2],
+    pub(super) heights: [f64; 2],
 }
 
 impl Layout {
@@ -87,25 +79,10 @@ impl Layout {
 
     /// Index of the texel at `(u, v)`.
     pub(super) fn texel_at(&self, place: [f64; 2]) -> Option<usize> {
-        let [x, y] = [0, 1].map(|axis| ((place[axis] - self.lo[axis]) / self.texel).floor());
+        let [x, y] = [0, 1].map(|axis| (place[axis] - self.lo[axis]) / self.texel);
         let size = self.size as f64;
         let inside = (0.0..size).contains(&x) && (0.0..size).contains(&y);
         inside.then(|| y as usize * self.size + x as usize)
-    }
-
-    /// Heights `w` of the solids of a frame, texel by texel, `u` fastest; [`NOTHING`] where there are none.
-    pub(super) fn trace(&self, tapes: &Tapes, frame: &Frame, job: &Job) -> Vec<f32> {
-        let scene = Scene::new(frame, job);
-        let endless =
-            frame.objects.iter().filter_map(|object| padded(&object.bounds)).any(|b| is_endless(&b));
-        let mut heights = vec![NOTHING; self.size * self.size];
-        heights.par_chunks_mut(BLOCK * self.size).enumerate().for_each(|(strip, heights)| {
-            let mut integrator = Integrator::new(&scene, Batch::new(tapes, frame), Batches::DEFAULT);
-            for left in (0..self.size).step_by(BLOCK) {
-                self.trace_block(&mut integrator, strip * BLOCK, left, endless, heights);
-            }
-        });
-        heights
     }
 
     /// Heights as a picture, the lowest of them dark.
@@ -120,43 +97,6 @@ impl Layout {
         let rows = heights.chunks(self.size).rev();
         let side = self.size as u32;
         Image { width: side, height: side, pixels: rows.flatten().map(pixel).collect() }
-    }
-
-    fn trace_block(
-        &self,
-        integrator: &mut Integrator<'_, Batch<'_>>,
-        top: usize,
-        left: usize,
-        endless: bool,
-        heights: &mut [f32],
-    ) {
-        let rows = heights.len() / self.size;
-        let columns = BLOCK.min(self.size - left);
-        let texels = (0..rows).flat_map(|row| (left..left + columns).map(move |column| [column, row]));
-        let texels: Vec<_> = texels.collect();
-        let [bottom, start] = self.heights;
-        let [u, v, w] = self.axes;
-        let origin = |&[column, row]: &[usize; 2]| {
-            let [x, y] = self.place([column as f64 + 0.5, (top + row) as f64 + 0.5]);
-            add(add(scale(u, x), scale(v, y)), scale(w, start))
-        };
-        let narrow = |v: Vec3<f64>| v.map(|x| x as f32);
-        let rays: Vec<_> =
-            texels.iter().map(|texel| Ray::new(narrow(origin(texel)), narrow(scale(w, -1.0)))).collect();
-        let step = LEAST_STEP * self.texel as f32;
-        let length = (start - bottom) as f32;
-        let entries = integrator.entries(&rays, length, step);
-        // Solids without end may lie above everything that has one.
-        let hidden = if endless {
-            let up = |ray: &Ray<f32>| ShadowRay::new(Ray::new(ray.origin, narrow(w)), f32::MAX, 4.0 * step);
-            integrator.blocked(&rays.iter().map(up).collect::<Vec<_>>())
-        } else {
-            vec![false; rays.len()]
-        };
-        for (([column, row], entry), hidden) in texels.into_iter().zip(entries).zip(hidden) {
-            let height = if hidden { Some(start) } else { entry.map(|t| start - f64::from(t)) };
-            heights[row * self.size + column] = height.map_or(NOTHING, |height| height as f32);
-        }
     }
 }
 
@@ -186,7 +126,7 @@ fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn is_endless(bounds: &Aabb) -> bool {
+pub(super) fn is_endless(bounds: &Aabb) -> bool {
     bounds.lo.iter().chain(&bounds.hi).any(|x| x.abs() > ENDLESS)
 }
 

@@ -9,7 +9,7 @@ use crate::render::{Batch, Batches, Integrator, Scene, camera_ray};
 use rayon::prelude::*;
 use std::time::Instant;
 use vol_compiler::frame::styled::{Occluders, StyledLight, TransferTable};
-use vol_compiler::frame::{Frame, Job, Quadrature, Sampling};
+use vol_compiler::frame::{Frame, Job};
 use vol_compiler::program::Program;
 use vol_compiler::program::style::{Heterogeneity, OperatorKind};
 
@@ -173,9 +173,8 @@ impl<'a> Measured<'a> {
         let light = &frame.lights[frame.styles.first()?.light];
         let bounds = shadow_map::bounded(&lit_bounds(frame)?, &frame.bounds);
         let layout = Layout::new(light, frame, &bounds, map_size, false)?;
-        let (quadrature, sampling) = (Quadrature::Midpoint, Sampling::CENTRE);
-        let job = Job { size, step: 1.0, shadow_step: 1.0, quadrature, sampling };
-        Some(Self { program, frame, tapes: Tapes::of_frame(program, frame), job, layout, bounds })
+        let tapes = Tapes::of_frame(program, frame);
+        Some(Self { program, frame, tapes, job: super::job(size, 1.0, 1.0), layout, bounds })
     }
 
     fn stage(&self) -> Stage<'_> {

@@ -10,8 +10,8 @@ use super::super::{Lowered, Lowerer};
 use super::Plan;
 use crate::ir::ValueId;
 use crate::program::style::{
-    Blend, Constraint, Content, Cut, Holes, ImageFile, Layer, LightMap, Operator, OperatorKind, Place,
-    Shafts, Stroke, Style, Transfer, View,
+    Blend, Constraint, Content, Cut, Holes, ImageFile, Layer, LightMap, MOST_KERNEL, Operator, OperatorKind,
+    Place, Shafts, Stroke, Style, Transfer, View,
 };
 use crate::program::{LightKind, Slot, Slot3};
 use vol_language::diag::Diagnostic;
@@ -147,10 +147,16 @@ const POSITIVE: Within =
     Within { wrong: |x| !(x > 0.0 && x.is_finite()), range: "more than 0", example: "1" };
 const NOT_NEGATIVE: Within =
     Within { wrong: |x| !(x >= 0.0 && x.is_finite()), range: "at least 0", example: "1" };
-const TEXELS: Within =
-    Within { wrong: |x| !(1.0..=8192.0).contains(&x), range: "between 1 and 8192 texels", example: "11" };
-const REACH: Within =
-    Within { wrong: |x| !(0.0..=8192.0).contains(&x), range: "between 0 and 8192 texels", example: "100" };
+const TEXELS: Within = Within {
+    wrong: |x| !(1.0..=MOST_KERNEL).contains(&x),
+    range: "between 1 and 8192 texels",
+    example: "11",
+};
+const REACH: Within = Within {
+    wrong: |x| !(0.0..=MOST_KERNEL).contains(&x),
+    range: "between 0 and 8192 texels",
+    example: "100",
+};
 const ANY: Within = Within { wrong: |x| !x.is_finite(), range: "finite", example: "0" };
 
 impl Lowerer<'_> {

@@ -114,14 +114,14 @@ pub(super) fn cuboid(half: [f64; 3]) -> Function {
 }
 
 /// A program and the frame of it, growing together.
-pub(super) struct World {
-    pub(super) program: Program,
-    pub(super) frame: Frame,
+pub(crate) struct World {
+    pub(crate) program: Program,
+    pub(crate) frame: Frame,
     pub(super) quadrature: Quadrature,
 }
 
 /// What a test medium is made of.
-pub(super) struct Gas {
+pub(crate) struct Gas {
     pub(super) region: Function,
     pub(super) interior: Function,
     pub(super) extinction: Function,
@@ -132,7 +132,7 @@ pub(super) struct Gas {
 
 impl Gas {
     /// The same everywhere in a box, with an isotropic phase function.
-    pub(super) fn uniform(
+    pub(crate) fn uniform(
         half: [f64; 3],
         scattering: [f64; 3],
         extinction: [f64; 3],
@@ -154,7 +154,7 @@ const NOWHERE: Slot = Slot(0);
 
 impl World {
     /// Nothing, seen from `origin` along -z; the picture's half height is `slope` at distance 1.
-    pub(super) fn new(origin: [f32; 3], slope: f32) -> Self {
+    pub(crate) fn new(origin: [f32; 3], slope: f32) -> Self {
         let program = Program {
             measures: Vec::new(),
             module: Module::default(),
@@ -257,7 +257,7 @@ impl World {
     }
 
     /// Adds a medium.
-    pub(super) fn medium(&mut self, gas: Gas) {
+    pub(crate) fn medium(&mut self, gas: Gas) {
         let [region, interior] = [self.function(gas.region), self.function(gas.interior)];
         let [extinction, phase] = [self.function(gas.extinction), self.function(gas.phase)];
         let index = self.program.media.len();
@@ -278,7 +278,7 @@ impl World {
     }
 
     /// Adds a distant light.
-    pub(super) fn sun(&mut self, direction: [f32; 3], color: [f32; 3]) {
+    pub(crate) fn sun(&mut self, direction: [f32; 3], color: [f32; 3]) {
         self.frame.lights.push(LightFrame {
             distant: true,
             position: direction,

@@ -1,7 +1,7 @@
 //! Exported shaders: every language accepts every example, by a compiler that is not ours, and a library computes what
 //! the scene says.
 
-use crate::support::{compile_file, ensure, examples, frame};
+use crate::support::{MANY_TUBES, compile, compile_file, ensure, examples, frame};
 use libtest_mimic::{Failed, Trial};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -23,10 +23,12 @@ const JOB: Job = Job {
 /// The trials of this file.
 pub(crate) fn trials() -> Vec<Trial> {
     let mut trials = Vec::new();
-    for (name, path) in examples() {
+    let of_examples = examples().into_iter().map(|(name, path)| (name, Some(path)));
+    for (name, path) in of_examples.chain([("many_tubes".into(), None)]) {
         let mut add = |what: &str, tool: Option<&str>, check: fn(&Program) -> Result<(), Failed>| {
             let path = path.clone();
-            let trial = Trial::test(format!("exports::{name}_{what}"), move || check(&compile_file(&path)?));
+            let trial =
+                Trial::test(format!("exports::{name}_{what}"), move || check(&program_at(path.as_deref())?));
             trials.push(match tool.filter(|tool| !is_installed(tool)) {
                 Some(tool) => trial.with_ignored_flag(true).with_kind(format!("{tool} is not installed")),
                 None => trial,
@@ -38,12 +40,19 @@ pub(crate) fn trials() -> Vec<Trial> {
         add("glsl__glslang", Some("glslangValidator"), glsl);
         add("shadertoy__glslang", Some("glslangValidator"), shadertoy);
         #[cfg(feature = "gpu")]
-        trials.push(crate::gpu_device::gpu_trial(&format!("exports::{name}_library"), move |gpu| {
-            on_gpu::library(gpu, &compile_file(&path)?)
-        }));
+        if let Some(path) = path {
+            trials.push(crate::gpu_device::gpu_trial(&format!("exports::{name}_library"), move |gpu| {
+                on_gpu::library(gpu, &compile_file(&path)?)
+            }));
+        }
     }
     trials.push(Trial::test("exports::comments_point_at_the_scene", comments));
     trials
+}
+
+/// An example, or many tubes.
+fn program_at(path: Option<&Path>) -> Result<Program, Failed> {
+    path.map_or_else(|| compile("many tubes", MANY_TUBES), compile_file)
 }
 
 fn is_installed(tool: &str) -> bool {

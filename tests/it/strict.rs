@@ -6,7 +6,8 @@ use crate::generated::{compiled, scenes};
 use crate::gpu_device::strict_trial;
 use crate::skips::union_of_many;
 use crate::support::{
-    FIRST, Random, compile, compile_file, ensure, examples, frame, frame_at, point, program_of, render,
+    FIRST, MANY_TUBES, Random, compile, compile_file, ensure, examples, frame, frame_at, point, program_of,
+    render,
 };
 use libtest_mimic::{Failed, Trial};
 use std::sync::atomic::AtomicBool;
@@ -170,29 +171,6 @@ fn union(gpu: &Gpu, eye: &str) -> Result<(), Failed> {
     let program = compile("union", &union_of_many(eye))?;
     same_pictures(gpu, &program, &frame(&program, 0.0, [48, 27])?)
 }
-
-/// Tubes side by side in a solid and in a medium: alike, of several kinds, and one tube in several places.
-pub(crate) const MANY_TUBES: &str = "\
-fn way(i: float) -> curve { bezier((-1.8 + 0.05 * i, -0.8, 0.11 * i - 0.5), (0.2 * i - 1, 0.9, 0), (1.8, -0.3 + 0.07 * i, 0.06 * i)) }
-let strand = tube(helix(0.3, 2, 3), radius: 0.06)
-object brush {
-  shape: union([
-    union([for i in 0..12: tube(way(i), radius: t => mix(0.03, 0.06 + 0.002 * i, t))]),
-    union([for i in 0..3: tube(way(3 * i + 0.5), radius: 0.05, caps: round)]),
-    union([for i in 0..4: strand.translate((0.5 * i - 0.7, -1, 0.1 * i))]),
-  ])
-  material: phong(0.04, q => rgb(0.5 + 0.2 * q.local.x, 0.5, 0.3), 0.5, 60)
-}
-medium smoke {
-  region: union([for i in 0..5: tube(way(2 * i), radius: t => mix(0.2, 0.1, t)).translate((0, 0.4, 0.3))])
-  density: q => 2 + q.local.x
-  absorb: 0.1
-  scatter: 0.3
-  emit: 0.1
-}
-light sun { from: (0.2, 1, 0.4) }
-camera { from: (0, 1, 6), at: (0, 0, 0), fov: 40deg }
-";
 
 fn many_tubes(gpu: &Gpu) -> Result<(), Failed> {
     let program = compile("many tubes", MANY_TUBES)?;

@@ -13,7 +13,7 @@
 //! %8 = sub %4 %7                let v8: f32 = (v4 - v3_in0);
 //! %9 = uniform 5                v8_of[v3_i] = v8;
 //! %10 = sub %6 %9             }
-//! %11 = min %8 %10            let v11: f32 = min(v8_of[0], v8_of[1]);
+//! %11 = min %8 %10            let v11: f32 = select(v8_of[1], v8_of[0], (v8_of[0] < v8_of[1]));
 //! ```
 //!
 //! Every value is computed as it would be without a loop.

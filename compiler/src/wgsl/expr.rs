@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! %7 = mul %2 %3          let v7: f32 = (v2 * v3);
-//! %8 = closest[1] …       let v8 = vol_closest(vec3f(…), bitcast<u32>(vol_uniforms[1].z), …);
+//! %8 = closest[1] …       let v8 = vol_closest(vec3f(…), VolCurve(…));
 //! %9 = extract %8 5       let v9: f32 = v8.distance;
 //! ```
 //!
@@ -24,6 +24,8 @@
 //!                           v7_s0 = v7_n0;
 //! }                         v7_go = v7_3; }
 //! ```
+//!
+//! Searches for closest points that are alike are turns of one loop, see [`super::batch`].
 
 mod turns;
 

@@ -26,6 +26,9 @@ enum Source {
 /// Fewest places with a loop of their own, if it is not all of them: each loop is another search in the text.
 const LEAST_PLACES: usize = 4;
 
+/// Instructions that a place may have more than the others of its loop: the first tube of a union also meets what is before it.
+const MOST_MORE: usize = 4;
+
 /// For each loop its rows of values by place, operands before what reads them; no loop where there are not two places.
 pub(super) fn loops(function: &Function, roots: &[ValueId]) -> Vec<Vec<Vec<ValueId>>> {
     let (sources, count) = sources(function, roots);
@@ -35,15 +38,18 @@ pub(super) fn loops(function: &Function, roots: &[ValueId]) -> Vec<Vec<Vec<Value
             places[*place].push(value);
         }
     }
+    // The shortest first: the others may have more.
+    places.sort_by_key(Vec::len);
     let mut loops = Vec::new();
     let mut others = Vec::new();
     while let Some(first) = places.first() {
         let is_alike = |place: &Vec<ValueId>| {
-            place.len() == first.len() && paired(function, &sources, first, place).iter().all(Option::is_some)
+            place.len() <= first.len() + MOST_MORE
+                && paired(function, &sources, first, place).iter().all(Option::is_some)
         };
         let (alike, rest): (Vec<_>, Vec<_>) = places.iter().cloned().partition(is_alike);
         if alike.len() >= LEAST_PLACES {
-            loops.push(rows(function, &sources, &alike));
+            loops.push(rows(function, &sources, alike));
         } else {
             others.extend(alike);
         }
@@ -51,14 +57,16 @@ pub(super) fn loops(function: &Function, roots: &[ValueId]) -> Vec<Vec<Vec<Value
     }
     // What is left shares at least the search.
     if others.len() > 1 {
-        loops.push(rows(function, &sources, &others));
+        loops.push(rows(function, &sources, others));
     }
     loops.retain(|rows| !rows.is_empty());
     loops
 }
 
 /// The rows that all places have.
-fn rows(function: &Function, sources: &[Source], places: &[Vec<ValueId>]) -> Vec<Vec<ValueId>> {
+fn rows(function: &Function, sources: &[Source], mut places: Vec<Vec<ValueId>>) -> Vec<Vec<ValueId>> {
+    // In the order of the text, in which curves and uniforms most often follow a rule.
+    places.sort();
     let first = &places[0];
     let pairs: Vec<_> = places.iter().map(|place| paired(function, sources, first, place)).collect();
     let mut rows: Vec<Vec<ValueId>> = Vec::new();

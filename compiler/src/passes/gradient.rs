@@ -16,7 +16,8 @@ use crate::ir::graph::{Graph, Rate};
 use crate::ir::{Inst, ValueId};
 use crate::ops::{self, Op, Ty};
 use repeat::Repeat;
-use std::collections::{HashMap, HashSet};
+use rustc_hash::FxHashMap;
+use std::collections::HashSet;
 
 /// Derivatives of a value that varies, by direction and result; `None` if an operation on the way has
 /// no rule.
@@ -29,7 +30,7 @@ type Slopes = Option<Vec<Vec<ValueId>>>;
 ///   (the stretch about a curve, the factors of a sum of octaves)
 pub fn gradient(graph: &mut Graph, value: ValueId, inputs: &[u32]) -> Option<Vec<ValueId>> {
     let (zero, one) = (graph.number(0.0), graph.number(1.0));
-    let mut known: HashMap<ValueId, Slopes> = HashMap::new();
+    let mut known: FxHashMap<ValueId, Slopes> = FxHashMap::default();
     for node in varying(graph, &[value], &known) {
         if let Inst::Input(index) = graph.inst(node) {
             let slopes = inputs.iter().map(|i| vec![if i == index { one } else { zero }]);
@@ -42,7 +43,7 @@ pub fn gradient(graph: &mut Graph, value: ValueId, inputs: &[u32]) -> Option<Vec
 
 /// The derivative of a single number; 0 for what does not vary at all.
 fn slope(
-    known: &HashMap<ValueId, Slopes>,
+    known: &FxHashMap<ValueId, Slopes>,
     value: ValueId,
     direction: usize,
     zero: ValueId,
@@ -57,7 +58,7 @@ fn slope(
 fn differentiate(
     graph: &mut Graph,
     values: &[ValueId],
-    known: &mut HashMap<ValueId, Slopes>,
+    known: &mut FxHashMap<ValueId, Slopes>,
     directions: usize,
 ) {
     let zero = graph.number(0.0);
@@ -86,7 +87,7 @@ fn differentiate(
 }
 
 /// What `values` need, varies with the position and is not known, operands first.
-pub(super) fn varying<T>(graph: &Graph, values: &[ValueId], known: &HashMap<ValueId, T>) -> Vec<ValueId> {
+pub(super) fn varying<T>(graph: &Graph, values: &[ValueId], known: &FxHashMap<ValueId, T>) -> Vec<ValueId> {
     let mut found = HashSet::new();
     let mut pending = values.to_vec();
     while let Some(node) = pending.pop() {
@@ -109,7 +110,7 @@ struct Step {
 }
 
 impl Step {
-    fn slopes(&self, graph: &mut Graph, known: &HashMap<ValueId, Slopes>, directions: usize) -> Slopes {
+    fn slopes(&self, graph: &mut Graph, known: &FxHashMap<ValueId, Slopes>, directions: usize) -> Slopes {
         let row = ops::operation(self.op);
         // What only jumps has the derivative 0, whatever its operands do.
         let jumps = self.op == Op::Floor || row.results == [Ty::Bool];

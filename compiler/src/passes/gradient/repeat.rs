@@ -13,7 +13,7 @@ use super::{Slopes, differentiate, slope};
 use crate::ir::graph::{Graph, Repeated};
 use crate::ir::{Function, Inst, ValueId};
 use crate::ops::{self, Op, Ty};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A loop on the way.
 pub(super) struct Repeat<'a> {
@@ -28,7 +28,7 @@ impl Repeat<'_> {
     pub(super) fn slopes(
         &self,
         graph: &mut Graph,
-        known: &mut HashMap<ValueId, Slopes>,
+        known: &mut FxHashMap<ValueId, Slopes>,
         directions: usize,
     ) -> Slopes {
         let count = self.body.state();
@@ -73,7 +73,12 @@ impl Repeat<'_> {
     }
 
     /// Which numbers of the state have a derivative in a direction, at first or later.
-    fn moves(&self, known: &HashMap<ValueId, Slopes>, depends: &[Vec<bool>], direction: usize) -> Vec<bool> {
+    fn moves(
+        &self,
+        known: &FxHashMap<ValueId, Slopes>,
+        depends: &[Vec<bool>],
+        direction: usize,
+    ) -> Vec<bool> {
         let sloped = |&arg: &ValueId| slope(known, arg, direction, self.zero) != Some(self.zero);
         let mut moves: Vec<bool> = self.args.iter().map(sloped).collect();
         loop {

@@ -23,6 +23,9 @@ use std::sync::{Arc, OnceLock};
 /// Fewer functions than this stay as they are: reading numbers takes longer than having them in the text.
 const FEWEST: usize = 8;
 
+/// The same for functions that search a curve, which are long.
+const FEWEST_SEARCHES: usize = 2;
+
 /// Most numbers that a function is given: WGSL allows 255 arguments.
 const MOST_NUMBERS: usize = 200;
 
@@ -113,7 +116,8 @@ impl Families {
             let (form, sources) = Form::of(program.module.function(function));
             forms.entry(form).or_default().push(Member { object, function, sources });
         }
-        let mut forms: Vec<_> = forms.into_iter().filter(|(_, members)| members.len() >= FEWEST).collect();
+        let mut forms: Vec<_> =
+            forms.into_iter().filter(|(form, members)| members.len() >= form.fewest()).collect();
         forms.sort_unstable_by_key(|(_, members)| members[0].object);
         let mut width = 0;
         for (form, members) in forms {
@@ -198,6 +202,12 @@ impl Form {
         }
         let outputs = function.outputs.iter().map(|&value| read(&places, &mut sources, value)).collect();
         (Self { inputs: function.inputs, insts, outputs }, sources)
+    }
+
+    /// From how many members on they are a family.
+    fn fewest(&self) -> usize {
+        let searches = self.insts.iter().any(|inst| curve_of(inst).is_some());
+        if searches { FEWEST_SEARCHES } else { FEWEST }
     }
 
     /// The family of members, the first of which is given with its numbers; where its numbers lie is left open.

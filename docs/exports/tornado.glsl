@@ -263,6 +263,7 @@ const uint VOL_IN_AT_OBJECTS = 27u;
 const uint VOL_IN_AT_MEDIA = 27u;
 const uint VOL_IN_AT_LIGHTS = 35u;
 const uint VOL_IN_AT_CELLS = 75u;
+const uint VOL_IN_ROW_WORDS = 0u;
 const bool VOL_IN_CORRECTED = true;
 const bool VOL_IN_SOFT_LIGHTS = false;
 const bool VOL_IN_OCCLUDING_LIGHTS = false;
@@ -1268,6 +1269,10 @@ vec3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5) {
     return vec3(v27_3, v7_, v28_4);
 }
 
+bool vol_in_joins_the_one_before(uint object) {
+    return false;
+}
+
 float vol_in_object_distance(uint index_7, vec3 p_17) {
     do {
         return VOL_IN_FAR;
@@ -1476,14 +1481,14 @@ bool vol_in_contains(vec3 lo_1, vec3 hi_1, vec3 point_2) {
     return (all(lessThanEqual(lo_1, point_2)) && all(lessThanEqual(point_2, hi_1)));
 }
 
-float[1] vol_in_find_sides() {
-    float sides[1] = float[1](0.0);
+void vol_in_find_sides(inout float sides[1]) {
     uint solid_1 = 0u;
+    uint solid_2 = VOL_IN_OBJECT_COUNT;
     bool loop_init_3 = true;
     while(true) {
         if (!loop_init_3) {
-            uint _e34 = solid_1;
-            solid_1 = (_e34 + 1u);
+            uint _e47 = solid_1;
+            solid_1 = (_e47 + 1u);
         }
         loop_init_3 = false;
         uint _e3 = solid_1;
@@ -1507,10 +1512,44 @@ float[1] vol_in_find_sides() {
                 float _e27 = vol_in_object_distance(_e26, _e9);
                 sides[_e24] = ((_e27 < 0.0) ? -1.0 : 1.0);
             }
+            uint _e33 = solid_1;
+            bool _e34 = vol_in_joins_the_one_before(_e33);
+            if (_e34) {
+                uint _e35 = solid_1;
+                uint _e37 = solid_1;
+                float _e39 = sides[_e37];
+                uint _e40 = solid_1;
+                float _e44 = sides[(_e40 - 1u)];
+                sides[_e35] = min(_e39, _e44);
+            }
         }
     }
-    float _e36[1] = sides;
-    return _e36;
+    bool loop_init_4 = true;
+    while(true) {
+        if (!loop_init_4) {
+            uint _e74 = solid_2;
+            solid_2 = (_e74 - 1u);
+        }
+        loop_init_4 = false;
+        uint _e51 = solid_2;
+        if ((_e51 > 1u)) {
+        } else {
+            break;
+        }
+        {
+            uint _e54 = solid_2;
+            bool _e57 = vol_in_joins_the_one_before((_e54 - 1u));
+            if (_e57) {
+                uint _e58 = solid_2;
+                uint _e62 = solid_2;
+                float _e66 = sides[(_e62 - 2u)];
+                uint _e67 = solid_2;
+                float _e71 = sides[(_e67 - 1u)];
+                sides[(_e58 - 2u)] = min(_e66, _e71);
+            }
+        }
+    }
+    return;
 }
 
 Vol_in_Span vol_in_loosened(Vol_in_Span span) {
@@ -1520,13 +1559,13 @@ Vol_in_Span vol_in_loosened(Vol_in_Span span) {
 Vol_in_Span vol_in_slab(Vol_in_Ray ray, vec3 lo_2, vec3 hi_2) {
     Vol_in_Span span_1 = Vol_in_Span(0.0, 4000000.0);
     uint axis_1 = 0u;
-    bool loop_init_4 = true;
+    bool loop_init_5 = true;
     while(true) {
-        if (!loop_init_4) {
+        if (!loop_init_5) {
             uint _e57 = axis_1;
             axis_1 = (_e57 + 1u);
         }
-        loop_init_4 = false;
+        loop_init_5 = false;
         uint _e9 = axis_1;
         if ((_e9 < 3u)) {
         } else {
@@ -1558,23 +1597,22 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, vec3 lo_2, vec3 hi_2) {
     return _e59;
 }
 
-Vol_in_Span[1] vol_in_object_spans(Vol_in_Ray ray_1, inout float sides_1[1]) {
-    Vol_in_Span spans[1] = Vol_in_Span[1](Vol_in_Span(0.0, 0.0));
-    uint solid_2 = 0u;
-    bool loop_init_5 = true;
+void vol_in_object_spans(Vol_in_Ray ray_1, inout float sides_1[1], inout Vol_in_Span spans[1]) {
+    uint solid_3 = 0u;
+    bool loop_init_6 = true;
     while(true) {
-        if (!loop_init_5) {
-            uint _e41 = solid_2;
-            solid_2 = (_e41 + 1u);
+        if (!loop_init_6) {
+            uint _e45 = solid_3;
+            solid_3 = (_e45 + 1u);
         }
-        loop_init_5 = false;
-        uint _e5 = solid_2;
+        loop_init_6 = false;
+        uint _e5 = solid_3;
         if ((_e5 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e8 = solid_2;
+            uint _e8 = solid_3;
             uint _e9 = vol_in_object_word(_e8);
             vec3 _e12 = vol_in_word3_((_e9 + 1u));
             vec3 _e15 = vol_in_word3_((_e9 + 4u));
@@ -1582,17 +1620,17 @@ Vol_in_Span[1] vol_in_object_spans(Vol_in_Ray ray_1, inout float sides_1[1]) {
             Vol_in_Span _e17 = vol_in_loosened(_e16);
             float _e18 = vol_frame_word(_e9);
             bool there = (_e18 != 0.0);
-            uint _e21 = solid_2;
+            uint _e21 = solid_3;
             spans[_e21].entry = (there ? _e17.entry : VOL_IN_FAR);
-            uint _e29 = solid_2;
-            float _e31 = sides_1[_e29];
-            float leave = ((_e31 < 0.0) ? VOL_IN_FAR : _e17.leave);
-            uint _e35 = solid_2;
-            spans[_e35].leave = (there ? leave : -4000000.0);
+            uint _e27 = solid_3;
+            float _e29 = sides_1[_e27];
+            bool is_within = ((_e29 < 0.0) && (_e17.entry <= _e17.leave));
+            float leave = (is_within ? VOL_IN_FAR : _e17.leave);
+            uint _e39 = solid_3;
+            spans[_e39].leave = (there ? leave : -4000000.0);
         }
     }
-    Vol_in_Span _e43[1] = spans;
-    return _e43;
+    return;
 }
 
 vec3 vol_in_ray_at(Vol_in_Ray ray_2, float t_13) {
@@ -1610,19 +1648,19 @@ float vol_in_remoteness() {
     return _e2;
 }
 
-float vol_in_way_steepness(uint solid_3, Vol_in_Ray ray_3, float t_14, float ahead) {
+float vol_in_way_steepness(uint solid_4, Vol_in_Ray ray_3, float t_14, float ahead) {
     vec3 _e4 = vol_in_ray_at(ray_3, t_14);
     vec3 _e6 = vol_in_ray_at(ray_3, (t_14 + ahead));
     float _e8 = vol_in_remoteness();
     float slack_1 = (4.7683716e-7 * (_e8 + (t_14 + ahead)));
-    float _e18 = vol_in_object_steepness(solid_3, (min(_e4, _e6) - vec3(slack_1)), (max(_e4, _e6) + vec3(slack_1)));
+    float _e18 = vol_in_object_steepness(solid_4, (min(_e4, _e6) - vec3(slack_1)), (max(_e4, _e6) + vec3(slack_1)));
     return _e18;
 }
 
-float vol_in_shorten(uint solid_4, Vol_in_Ray ray_4, float t_15, float last_1, float value_1) {
+float vol_in_shorten(uint solid_5, Vol_in_Ray ray_4, float t_15, float last_1, float value_1) {
     float ahead_1 = 0.0;
     uint count = 0u;
-    uint _e5 = vol_in_object_word(solid_4);
+    uint _e5 = vol_in_object_word(solid_5);
     float _e8 = vol_frame_word((_e5 + 7u));
     if ((_e8 != VOL_IN_BY_STEEPNESS)) {
         return (_e8 * value_1);
@@ -1632,13 +1670,13 @@ float vol_in_shorten(uint solid_4, Vol_in_Ray ray_4, float t_15, float last_1, f
     }
     float _e15 = vol_in_reach(last_1, value_1);
     ahead_1 = _e15;
-    bool loop_init_6 = true;
+    bool loop_init_7 = true;
     while(true) {
-        if (!loop_init_6) {
+        if (!loop_init_7) {
             uint _e33 = count;
             count = (_e33 + 1u);
         }
-        loop_init_6 = false;
+        loop_init_7 = false;
         uint _e19 = count;
         if ((_e19 < VOL_IN_TRIES)) {
         } else {
@@ -1646,7 +1684,7 @@ float vol_in_shorten(uint solid_4, Vol_in_Ray ray_4, float t_15, float last_1, f
         }
         {
             float _e22 = ahead_1;
-            float _e23 = vol_in_way_steepness(solid_4, ray_4, t_15, _e22);
+            float _e23 = vol_in_way_steepness(solid_5, ray_4, t_15, _e22);
             if ((_e23 < VOL_IN_NO_BOUND)) {
                 float _e27 = ahead_1;
                 return min((value_1 / _e23), _e27);
@@ -1660,52 +1698,70 @@ float vol_in_shorten(uint solid_4, Vol_in_Ray ray_4, float t_15, float last_1, f
 
 Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout float sides_2[1], float t_16, float before_1) {
     Vol_in_Near near = Vol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0);
-    uint solid_5 = 0u;
-    bool loop_init_7 = true;
+    Vol_in_Near others = Vol_in_Near(0.0, 0.0, 0u, 0.0, 0.0);
+    float farthest = -4000000.0;
+    uint solid_6 = 0u;
+    Vol_in_Near _e12 = near;
+    others = _e12;
+    bool loop_init_8 = true;
     while(true) {
-        if (!loop_init_7) {
-            uint _e74 = solid_5;
-            solid_5 = (_e74 + 1u);
+        if (!loop_init_8) {
+            uint _e93 = solid_6;
+            solid_6 = (_e93 + 1u);
         }
-        loop_init_7 = false;
-        uint _e14 = solid_5;
-        if ((_e14 < VOL_IN_OBJECT_COUNT)) {
+        loop_init_8 = false;
+        uint _e18 = solid_6;
+        if ((_e18 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e17 = solid_5;
-            Vol_in_Span span_2 = spans_1[_e17];
+            uint _e21 = solid_6;
+            bool _e22 = vol_in_joins_the_one_before(_e21);
+            uint _e23 = solid_6;
+            float _e25 = sides_2[_e23];
+            bool joined_1 = (_e22 && (_e25 < 0.0));
+            if (!(joined_1)) {
+                Vol_in_Near _e30 = near;
+                others = _e30;
+                farthest = -4000000.0;
+            }
+            uint _e32 = solid_6;
+            Vol_in_Span span_2 = spans_1[_e32];
             bool some_1 = (span_2.entry <= span_2.leave);
             bool ahead_3 = (some_1 && (t_16 < span_2.entry));
-            float _e28 = near.gap;
-            float _e30 = near.gap;
-            near.gap = (ahead_3 ? min(_e30, (span_2.entry - t_16)) : _e28);
+            float _e43 = near.gap;
+            float _e45 = near.gap;
+            near.gap = (ahead_3 ? min(_e45, (span_2.entry - t_16)) : _e43);
             if (((some_1 && (t_16 >= span_2.entry)) && (t_16 <= span_2.leave))) {
-                float _e43 = near.rest;
-                near.rest = max(_e43, (span_2.leave - t_16));
-                uint _e47 = solid_5;
-                float _e49 = sides_2[_e47];
-                uint _e50 = solid_5;
-                vec3 _e51 = vol_in_ray_at(ray_5, t_16);
-                float _e52 = vol_in_object_distance(_e50, _e51);
-                float seen_3 = (_e49 * _e52);
-                float _e56 = near.value;
-                near.value = min(_e56, seen_3);
-                uint _e58 = solid_5;
-                float _e60 = vol_in_shorten(_e58, ray_5, t_16, (t_16 - before_1), seen_3);
-                float _e62 = near.distance_;
-                bool closer = (_e60 < _e62);
-                float _e66 = near.distance_;
-                near.distance_ = (closer ? _e60 : _e66);
-                uint _e70 = near.solid;
-                uint _e71 = solid_5;
-                near.solid = (closer ? _e71 : _e70);
+                float _e58 = near.rest;
+                near.rest = max(_e58, (span_2.leave - t_16));
+                uint _e62 = solid_6;
+                float _e64 = sides_2[_e62];
+                uint _e65 = solid_6;
+                vec3 _e66 = vol_in_ray_at(ray_5, t_16);
+                float _e67 = vol_in_object_distance(_e65, _e66);
+                float seen_3 = (_e64 * _e67);
+                uint _e69 = solid_6;
+                float _e71 = vol_in_shorten(_e69, ray_5, t_16, (t_16 - before_1), seen_3);
+                float _e73 = farthest;
+                if ((!(joined_1) || (seen_3 > _e73))) {
+                    farthest = seen_3;
+                    float _e78 = others.value;
+                    near.value = min(_e78, seen_3);
+                    float _e81 = others.distance_;
+                    bool closer = (_e71 < _e81);
+                    float _e85 = others.distance_;
+                    near.distance_ = (closer ? _e71 : _e85);
+                    uint _e89 = others.solid;
+                    uint _e90 = solid_6;
+                    near.solid = (closer ? _e90 : _e89);
+                }
             }
         }
     }
-    Vol_in_Near _e76 = near;
-    return _e76;
+    Vol_in_Near _e95 = near;
+    return _e95;
 }
 
 float vol_in_footprint() {
@@ -1755,19 +1811,19 @@ float vol_in_rounding(float t_19) {
     return (7.6293945e-6 * (_e2 + t_19));
 }
 
-vec3 vol_in_facing_gradient(Vol_in_Ray ray_6, uint solid_6, float t_20, float side) {
+vec3 vol_in_facing_gradient(Vol_in_Ray ray_6, uint solid_7, float t_20, float side) {
     vec3 gradient = vec3(0.0);
     float aside = 0.0;
     uint round_ = 0u;
     float _e7 = vol_in_rounding(t_20);
     aside = _e7;
-    bool loop_init_8 = true;
+    bool loop_init_9 = true;
     while(true) {
-        if (!loop_init_8) {
+        if (!loop_init_9) {
             uint _e28 = round_;
             round_ = (_e28 + 1u);
         }
-        loop_init_8 = false;
+        loop_init_9 = false;
         uint _e11 = round_;
         if ((_e11 < 2u)) {
         } else {
@@ -1776,7 +1832,7 @@ vec3 vol_in_facing_gradient(Vol_in_Ray ray_6, uint solid_6, float t_20, float si
         {
             float _e14 = aside;
             vec3 _e16 = vol_in_ray_at(ray_6, (t_20 + _e14));
-            vec3 _e17 = vol_in_object_gradient(solid_6, _e16);
+            vec3 _e17 = vol_in_object_gradient(solid_7, _e16);
             gradient = (_e17 * side);
             vec3 _e19 = gradient;
             float _e21 = vol_in_dot3_(_e19, ray_6.direction);
@@ -1791,7 +1847,7 @@ vec3 vol_in_facing_gradient(Vol_in_Ray ray_6, uint solid_6, float t_20, float si
     return _e30;
 }
 
-Vol_in_Contact vol_in_contact(Vol_in_Ray ray_7, uint solid_7, float t_21, float value_2, vec3 gradient_1) {
+Vol_in_Contact vol_in_contact(Vol_in_Ray ray_7, uint solid_8, float t_21, float value_2, vec3 gradient_1) {
     float _e5 = vol_in_length3_(gradient_1);
     bool is_flat_1 = (_e5 < VOL_IN_FLAT);
     float divisor_1 = (is_flat_1 ? 1.0 : _e5);
@@ -1799,20 +1855,20 @@ Vol_in_Contact vol_in_contact(Vol_in_Ray ray_7, uint solid_7, float t_21, float 
     float _e15 = vol_in_tolerance(t_21);
     float most = (4.0 * _e15);
     vec3 _e19 = vol_in_ray_at(ray_7, t_21);
-    return Vol_in_Contact(true, solid_7, t_21, _e19, normal, min((value_2 / divisor_1), most));
+    return Vol_in_Contact(true, solid_8, t_21, _e19, normal, min((value_2 / divisor_1), most));
 }
 
-Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_8, float before_2, float t_22, float side_1) {
+Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, float t_22, float side_1) {
     Vol_in_Bracket bracket_2 = Vol_in_Bracket(vec2(0.0), vec2(0.0));
     uint round_1 = 0u;
     bracket_2 = Vol_in_Bracket(vec2(before_2, 0.0), vec2(t_22, 0.0));
-    bool loop_init_9 = true;
+    bool loop_init_10 = true;
     while(true) {
-        if (!loop_init_9) {
+        if (!loop_init_10) {
             uint _e41 = round_1;
             round_1 = (_e41 + 1u);
         }
-        loop_init_9 = false;
+        loop_init_10 = false;
         uint _e13 = round_1;
         if ((_e13 < 6u)) {
         } else {
@@ -1825,7 +1881,7 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_8, float before_2, flo
             uint _e22 = round_1;
             float place_9 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
             vec3 _e26 = vol_in_ray_at(ray_8, place_9);
-            float _e27 = vol_in_object_distance(solid_8, _e26);
+            float _e27 = vol_in_object_distance(solid_9, _e26);
             vec2 found_3 = vec2(place_9, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
@@ -1848,8 +1904,8 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_8, float before_2, flo
     vec2 _e53 = bracket_2.inside;
     vec2 _e55 = bracket_2.outside;
     vec2 best = (nearer ? _e55 : _e53);
-    vec3 _e58 = vol_in_facing_gradient(ray_8, solid_8, best.x, side_1);
-    Vol_in_Contact _e62 = vol_in_contact(ray_8, solid_8, best.x, abs(best.y), _e58);
+    vec3 _e58 = vol_in_facing_gradient(ray_8, solid_9, best.x, side_1);
+    Vol_in_Contact _e62 = vol_in_contact(ray_8, solid_9, best.x, abs(best.y), _e58);
     return _e62;
 }
 
@@ -1859,57 +1915,55 @@ Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9) {
     float t_23 = 0.0;
     float before_3 = 0.0;
     bool hit = false;
-    uint solid_9 = 0u;
+    uint solid_10 = 0u;
     uint count_1 = 1u;
-    float _e1[1] = vol_in_find_sides();
-    sides_3 = _e1;
-    Vol_in_Span _e3[1] = vol_in_object_spans(ray_9, sides_3);
-    spans_2 = _e3;
-    bool loop_init_10 = true;
+    vol_in_find_sides(sides_3);
+    vol_in_object_spans(ray_9, sides_3, spans_2);
+    bool loop_init_11 = true;
     while(true) {
-        if (!loop_init_10) {
-            uint _e43 = count_1;
-            count_1 = (_e43 + 1u);
+        if (!loop_init_11) {
+            uint _e41 = count_1;
+            count_1 = (_e41 + 1u);
         }
-        loop_init_10 = false;
-        uint _e15 = count_1;
-        if ((_e15 <= VOL_IN_MAX_STEPS)) {
+        loop_init_11 = false;
+        uint _e13 = count_1;
+        if ((_e13 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e18 = t_23;
-            float _e19 = before_3;
-            Vol_in_Near _e20 = vol_in_nearest(ray_9, spans_2, sides_3, _e18, _e19);
-            float _e22 = t_23;
-            float _e23 = vol_in_tolerance(_e22);
-            uint _e24 = count_1;
-            hit = (_e20.value < ((_e24 == VOL_IN_MAX_STEPS) ? _e23 : 0.0));
-            solid_9 = _e20.solid;
+            float _e16 = t_23;
+            float _e17 = before_3;
+            Vol_in_Near _e18 = vol_in_nearest(ray_9, spans_2, sides_3, _e16, _e17);
+            float _e20 = t_23;
+            float _e21 = vol_in_tolerance(_e20);
+            uint _e22 = count_1;
+            hit = (_e18.value < ((_e22 == VOL_IN_MAX_STEPS) ? _e21 : 0.0));
+            solid_10 = _e18.solid;
+            float _e29 = t_23;
+            uint _e30 = count_1;
             float _e31 = t_23;
-            uint _e32 = count_1;
-            float _e33 = t_23;
-            float _e34 = vol_in_stride(_e33);
-            float _e35 = vol_in_advance(_e20, _e32, _e34);
-            float next_2 = (_e31 + _e35);
-            bool _e37 = hit;
-            if ((_e37 || (next_2 >= VOL_IN_FAR))) {
+            float _e32 = vol_in_stride(_e31);
+            float _e33 = vol_in_advance(_e18, _e30, _e32);
+            float next_2 = (_e29 + _e33);
+            bool _e35 = hit;
+            if ((_e35 || (next_2 >= VOL_IN_FAR))) {
                 break;
             }
-            float _e41 = t_23;
-            before_3 = _e41;
+            float _e39 = t_23;
+            before_3 = _e39;
             t_23 = next_2;
         }
     }
-    bool _e45 = hit;
-    if (_e45) {
-        uint _e46 = solid_9;
-        float _e47 = before_3;
-        float _e48 = t_23;
-        uint _e49 = solid_9;
-        float _e51 = sides_3[_e49];
-        Vol_in_Contact _e52 = vol_in_refine(ray_9, _e46, _e47, _e48, _e51);
-        return _e52;
+    bool _e43 = hit;
+    if (_e43) {
+        uint _e44 = solid_10;
+        float _e45 = before_3;
+        float _e46 = t_23;
+        uint _e47 = solid_10;
+        float _e49 = sides_3[_e47];
+        Vol_in_Contact _e50 = vol_in_refine(ray_9, _e44, _e45, _e46, _e49);
+        return _e50;
     }
     return Vol_in_Contact(false, 0u, 4000000.0, vec3(0.0), vec3(0.0), 0.0);
 }
@@ -1973,23 +2027,22 @@ float vol_in_squared_sine(float tangent) {
     return (squared_1 / (1.0 + squared_1));
 }
 
-Vol_in_Span[1] vol_in_cone_spans(Vol_in_Ray ray_11, float distance_, float slope_1) {
-    Vol_in_Span spans_3[1] = Vol_in_Span[1](Vol_in_Span(0.0, 0.0));
-    uint solid_10 = 0u;
-    bool loop_init_11 = true;
+void vol_in_cone_spans(Vol_in_Ray ray_11, float distance_, float slope_1, inout Vol_in_Span spans_3[1]) {
+    uint solid_11 = 0u;
+    bool loop_init_12 = true;
     while(true) {
-        if (!loop_init_11) {
-            uint _e51 = solid_10;
-            solid_10 = (_e51 + 1u);
+        if (!loop_init_12) {
+            uint _e51 = solid_11;
+            solid_11 = (_e51 + 1u);
         }
-        loop_init_11 = false;
-        uint _e6 = solid_10;
+        loop_init_12 = false;
+        uint _e6 = solid_11;
         if ((_e6 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e9 = solid_10;
+            uint _e9 = solid_11;
             uint _e10 = vol_in_object_word(_e9);
             vec3 _e13 = vol_in_word3_((_e10 + 1u));
             vec3 _e16 = vol_in_word3_((_e10 + 4u));
@@ -1999,33 +2052,32 @@ Vol_in_Span[1] vol_in_cone_spans(Vol_in_Ray ray_11, float distance_, float slope
             Vol_in_Span _e34 = vol_in_loosened(_e33);
             float _e35 = vol_frame_word(_e10);
             bool there_1 = (_e35 != 0.0);
-            uint _e38 = solid_10;
+            uint _e38 = solid_11;
             spans_3[_e38].entry = (there_1 ? _e34.entry : VOL_IN_FAR);
-            uint _e44 = solid_10;
+            uint _e44 = solid_11;
             spans_3[_e44].leave = (there_1 ? _e34.leave : -4000000.0);
         }
     }
-    Vol_in_Span _e53[1] = spans_3;
-    return _e53;
+    return;
 }
 
 Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_25) {
     Vol_in_Around near_2 = Vol_in_Around(4000000.0, 4000000.0, 4000000.0);
-    uint solid_11 = 0u;
-    bool loop_init_12 = true;
+    uint solid_12 = 0u;
+    bool loop_init_13 = true;
     while(true) {
-        if (!loop_init_12) {
-            uint _e60 = solid_11;
-            solid_11 = (_e60 + 1u);
+        if (!loop_init_13) {
+            uint _e60 = solid_12;
+            solid_12 = (_e60 + 1u);
         }
-        loop_init_12 = false;
-        uint _e10 = solid_11;
+        loop_init_13 = false;
+        uint _e10 = solid_12;
         if ((_e10 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e13 = solid_11;
+            uint _e13 = solid_12;
             Vol_in_Span span_3 = spans_4[_e13];
             bool some_2 = (span_3.entry <= span_3.leave);
             bool before_11 = (some_2 && (t_25 < span_3.entry));
@@ -2033,12 +2085,12 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
             float _e26 = near_2.gap;
             near_2.gap = (before_11 ? min(_e26, (span_3.entry - t_25)) : _e24);
             if (((some_2 && (t_25 >= span_3.entry)) && (t_25 <= span_3.leave))) {
-                uint _e37 = solid_11;
+                uint _e37 = solid_12;
                 vec3 _e38 = vol_in_ray_at(ray_12, t_25);
                 float _e39 = vol_in_object_distance(_e37, _e38);
-                uint _e40 = solid_11;
+                uint _e40 = solid_12;
                 float _e42 = vol_in_shorten(_e40, ray_12, t_25, 0.0, _e39);
-                uint _e43 = solid_11;
+                uint _e43 = solid_12;
                 uint _e44 = vol_in_object_word(_e43);
                 float _e47 = vol_frame_word((_e44 + 7u));
                 bool own_units = (_e47 == VOL_IN_BY_STEEPNESS);
@@ -2097,60 +2149,59 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
     uint count_2 = 0u;
     float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_4));
     lowest_1 = _e6;
-    Vol_in_Span _e8[1] = vol_in_cone_spans(ray_13, distance_2, slope_4);
-    spans_5 = _e8;
+    vol_in_cone_spans(ray_13, distance_2, slope_4, spans_5);
     float end_19 = min(distance_2, VOL_IN_FAR);
-    bool loop_init_13 = true;
+    bool loop_init_14 = true;
     while(true) {
-        if (!loop_init_13) {
-            uint _e77 = count_2;
-            count_2 = (_e77 + 1u);
+        if (!loop_init_14) {
+            uint _e76 = count_2;
+            count_2 = (_e76 + 1u);
         }
-        loop_init_13 = false;
-        uint _e22 = count_2;
-        if ((_e22 < VOL_IN_MAX_STEPS)) {
+        loop_init_14 = false;
+        uint _e21 = count_2;
+        if ((_e21 < VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e25 = t_28;
-            Vol_in_Around _e26 = vol_in_around(ray_13, spans_5, _e25);
-            float _e28 = t_28;
-            bool _e29 = vol_in_enters(_e26.distance_, _e28, least_step_1);
-            if (_e29) {
+            float _e24 = t_28;
+            Vol_in_Around _e25 = vol_in_around(ray_13, spans_5, _e24);
+            float _e27 = t_28;
+            bool _e28 = vol_in_enters(_e25.distance_, _e27, least_step_1);
+            if (_e28) {
                 lowest_1 = 0.0;
                 break;
             }
-            float _e31 = t_28;
-            float _e39 = t_28;
-            bool counts = (((_e31 > 0.0) && (_e26.distance_ >= 0.0)) && (_e26.distance_ < (end_19 - _e39)));
-            float _e43 = t_28;
-            float divisor_2 = (counts ? _e43 : 1.0);
-            float sine_1 = min((_e26.distance_ / divisor_2), 1.0);
+            float _e30 = t_28;
+            float _e38 = t_28;
+            bool counts = (((_e30 > 0.0) && (_e25.distance_ >= 0.0)) && (_e25.distance_ < (end_19 - _e38)));
+            float _e42 = t_28;
+            float divisor_2 = (counts ? _e42 : 1.0);
+            float sine_1 = min((_e25.distance_ / divisor_2), 1.0);
             vec2 sample_1 = vec2((1.0 / divisor_2), (sine_1 * sine_1));
-            vec2 _e55 = older;
-            vec2 _e56 = newer;
-            float _e57 = vol_in_least(_e55, _e56, sample_1);
-            float found_4 = min(sample_1.y, _e57);
+            vec2 _e54 = older;
+            vec2 _e55 = newer;
+            float _e56 = vol_in_least(_e54, _e55, sample_1);
+            float found_4 = min(sample_1.y, _e56);
+            float _e58 = lowest_1;
             float _e59 = lowest_1;
-            float _e60 = lowest_1;
-            lowest_1 = (counts ? min(_e60, found_4) : _e59);
-            vec2 _e65 = newer;
-            older = (counts ? _e65 : vec2(0.0));
+            lowest_1 = (counts ? min(_e59, found_4) : _e58);
+            vec2 _e64 = newer;
+            older = (counts ? _e64 : vec2(0.0));
             newer = (counts ? sample_1 : vec2(0.0));
+            float _e69 = t_28;
             float _e70 = t_28;
-            float _e71 = t_28;
-            float _e72 = vol_in_cone_step(_e26, least_step_1, slope_4, _e71);
-            t_28 = (_e70 + _e72);
-            float _e74 = t_28;
-            if ((_e74 >= end_19)) {
+            float _e71 = vol_in_cone_step(_e25, least_step_1, slope_4, _e70);
+            t_28 = (_e69 + _e71);
+            float _e73 = t_28;
+            if ((_e73 >= end_19)) {
                 break;
             }
         }
     }
-    float _e79 = lowest_1;
-    float _e80 = vol_in_clearance(_e79, slope_4);
-    return _e80;
+    float _e78 = lowest_1;
+    float _e79 = vol_in_clearance(_e78, slope_4);
+    return _e79;
 }
 
 float vol_in_clear_depth(float clear, vec2 end_1, vec2 place_1) {
@@ -2168,13 +2219,13 @@ float vol_in_lit_part(float centre, inout float clear_1[8]) {
     uint end_2 = 0u;
     float widest = 0.0;
     uint end_3 = 0u;
-    bool loop_init_14 = true;
+    bool loop_init_15 = true;
     while(true) {
-        if (!loop_init_14) {
+        if (!loop_init_15) {
             uint _e60 = index_15;
             index_15 = (_e60 + 1u);
         }
-        loop_init_14 = false;
+        loop_init_15 = false;
         uint _e10 = index_15;
         if ((_e10 < VOL_IN_PLACE_COUNT)) {
         } else {
@@ -2186,13 +2237,13 @@ float vol_in_lit_part(float centre, inout float clear_1[8]) {
             float _e18 = vol_in_clear_depth(centre, vec2(0.0), _e17);
             inside = _e18;
             end_2 = 0u;
-            bool loop_init_15 = true;
+            bool loop_init_16 = true;
             while(true) {
-                if (!loop_init_15) {
+                if (!loop_init_16) {
                     uint _e38 = end_2;
                     end_2 = (_e38 + 1u);
                 }
-                loop_init_15 = false;
+                loop_init_16 = false;
                 uint _e22 = end_2;
                 if ((_e22 < VOL_IN_RIM_COUNT)) {
                 } else {
@@ -2221,13 +2272,13 @@ float vol_in_lit_part(float centre, inout float clear_1[8]) {
     float part_4 = (_e62 / 19.0);
     float whole_1 = max(((4.0 * centre) - 3.0), 0.0);
     widest = centre;
-    bool loop_init_16 = true;
+    bool loop_init_17 = true;
     while(true) {
-        if (!loop_init_16) {
+        if (!loop_init_17) {
             uint _e83 = end_3;
             end_3 = (_e83 + 1u);
         }
-        loop_init_16 = false;
+        loop_init_17 = false;
         uint _e74 = end_3;
         if ((_e74 < VOL_IN_RIM_COUNT)) {
         } else {
@@ -2250,13 +2301,13 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
     float centre_1 = 0.0;
     uint index_16 = 0u;
     Vol_in_Ray toward = Vol_in_Ray(vec3(0.0), vec3(0.0), 0.0);
-    bool loop_init_17 = true;
+    bool loop_init_18 = true;
     while(true) {
-        if (!loop_init_17) {
+        if (!loop_init_18) {
             uint _e36 = index_16;
             index_16 = (_e36 + 1u);
         }
-        loop_init_17 = false;
+        loop_init_18 = false;
         uint _e11 = index_16;
         if ((_e11 <= VOL_IN_RIM_COUNT)) {
         } else {
@@ -2291,28 +2342,26 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
     return _e39;
 }
 
-float[1] vol_in_no_sides() {
-    float sides_4[1] = float[1](0.0);
-    uint solid_12 = 0u;
-    bool loop_init_18 = true;
+void vol_in_no_sides(inout float sides_4[1]) {
+    uint solid_13 = 0u;
+    bool loop_init_19 = true;
     while(true) {
-        if (!loop_init_18) {
-            uint _e10 = solid_12;
-            solid_12 = (_e10 + 1u);
+        if (!loop_init_19) {
+            uint _e10 = solid_13;
+            solid_13 = (_e10 + 1u);
         }
-        loop_init_18 = false;
-        uint _e3 = solid_12;
+        loop_init_19 = false;
+        uint _e3 = solid_13;
         if ((_e3 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e6 = solid_12;
+            uint _e6 = solid_13;
             sides_4[_e6] = 1.0;
         }
     }
-    float _e12[1] = sides_4;
-    return _e12;
+    return;
 }
 
 bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
@@ -2322,45 +2371,43 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
     float before_4 = 0.0;
     bool inside_1 = false;
     uint count_3 = 1u;
-    float _e3[1] = vol_in_no_sides();
-    sides_5 = _e3;
-    Vol_in_Span _e5[1] = vol_in_object_spans(ray_15, sides_5);
-    spans_6 = _e5;
+    vol_in_no_sides(sides_5);
+    vol_in_object_spans(ray_15, sides_5, spans_6);
     float end_21 = min(distance_4, VOL_IN_FAR);
-    bool loop_init_19 = true;
+    bool loop_init_20 = true;
     while(true) {
-        if (!loop_init_19) {
-            uint _e36 = count_3;
-            count_3 = (_e36 + 1u);
+        if (!loop_init_20) {
+            uint _e34 = count_3;
+            count_3 = (_e34 + 1u);
         }
-        loop_init_19 = false;
-        uint _e17 = count_3;
-        if ((_e17 <= VOL_IN_MAX_STEPS)) {
+        loop_init_20 = false;
+        uint _e15 = count_3;
+        if ((_e15 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e20 = t_29;
-            float _e21 = before_4;
-            Vol_in_Near _e22 = vol_in_nearest(ray_15, spans_6, sides_5, _e20, _e21);
+            float _e18 = t_29;
+            float _e19 = before_4;
+            Vol_in_Near _e20 = vol_in_nearest(ray_15, spans_6, sides_5, _e18, _e19);
+            float _e22 = t_29;
+            bool _e23 = vol_in_enters(_e20.distance_, _e22, least_2);
+            inside_1 = _e23;
             float _e24 = t_29;
-            bool _e25 = vol_in_enters(_e22.distance_, _e24, least_2);
-            inside_1 = _e25;
-            float _e26 = t_29;
-            before_4 = _e26;
-            float _e27 = t_29;
-            uint _e28 = count_3;
-            float _e29 = vol_in_advance(_e22, _e28, least_2);
-            t_29 = (_e27 + _e29);
-            bool _e31 = inside_1;
-            float _e32 = t_29;
-            if ((_e31 || (_e32 >= end_21))) {
+            before_4 = _e24;
+            float _e25 = t_29;
+            uint _e26 = count_3;
+            float _e27 = vol_in_advance(_e20, _e26, least_2);
+            t_29 = (_e25 + _e27);
+            bool _e29 = inside_1;
+            float _e30 = t_29;
+            if ((_e29 || (_e30 >= end_21))) {
                 break;
             }
         }
     }
-    bool _e38 = inside_1;
-    return _e38;
+    bool _e36 = inside_1;
+    return _e36;
 }
 
 float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
@@ -2384,13 +2431,13 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
     uint i_4 = 0u;
     uint j_3 = 0u;
     uint four = min((channels + 3u), 4u);
-    bool loop_init_20 = true;
+    bool loop_init_21 = true;
     while(true) {
-        if (!loop_init_20) {
+        if (!loop_init_21) {
             uint _e54 = i_4;
             i_4 = (_e54 + 1u);
         }
-        loop_init_20 = false;
+        loop_init_21 = false;
         uint _e14 = i_4;
         if ((_e14 < four)) {
         } else {
@@ -2398,13 +2445,13 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
         }
         {
             j_3 = 0u;
-            bool loop_init_21 = true;
+            bool loop_init_22 = true;
             while(true) {
-                if (!loop_init_21) {
+                if (!loop_init_22) {
                     uint _e51 = j_3;
                     j_3 = (_e51 + 1u);
                 }
-                loop_init_21 = false;
+                loop_init_22 = false;
                 uint _e18 = j_3;
                 if ((_e18 < four)) {
                 } else {
@@ -2469,13 +2516,13 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     float _e100 = vol_frame_word((grid + 26u));
     uint first_5 = uint(_e100);
     vec3 _e104 = vol_in_word3_((grid + 22u));
-    bool loop_init_22 = true;
+    bool loop_init_23 = true;
     while(true) {
-        if (!loop_init_22) {
+        if (!loop_init_23) {
             uint _e118 = channel;
             channel = (_e118 + 1u);
         }
-        loop_init_22 = false;
+        loop_init_23 = false;
         uint _e110 = channel;
         if ((_e110 < channels_1)) {
         } else {
@@ -2549,13 +2596,13 @@ Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb
         return _e32;
     }
     cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_1));
-    bool loop_init_23 = true;
+    bool loop_init_24 = true;
     while(true) {
-        if (!loop_init_23) {
+        if (!loop_init_24) {
             uint _e58 = index_17;
             index_17 = (_e58 + 1u);
         }
-        loop_init_23 = false;
+        loop_init_24 = false;
         uint _e40 = index_17;
         if ((_e40 < count_5)) {
         } else {
@@ -2878,13 +2925,13 @@ vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7,
         first_2 = _e21;
         uvec2 _e26 = vol_in_new_ends(own_6, _e18);
         end_5 = _e26.x;
-        bool loop_init_24 = true;
+        bool loop_init_25 = true;
         while(true) {
-            if (!loop_init_24) {
+            if (!loop_init_25) {
                 uint _e45 = end_5;
                 end_5 = (_e45 + 1u);
             }
-            loop_init_24 = false;
+            loop_init_25 = false;
             uint _e29 = end_5;
             if ((_e29 < _e26.y)) {
             } else {
@@ -2929,14 +2976,14 @@ vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
     comb_9 = _e4;
     int _e11 = comb_9.first;
     node_8 = (_e11 - 1);
-    bool loop_init_25 = true;
+    bool loop_init_26 = true;
     while(true) {
-        if (!loop_init_25) {
+        if (!loop_init_26) {
             int _e27 = node_8;
             int _e29 = vol_in_next_node(comb_9, _e27, 1);
             node_8 = _e29;
         }
-        loop_init_25 = false;
+        loop_init_26 = false;
         int _e15 = node_8;
         int _e17 = comb_9.last;
         if ((_e15 <= _e17)) {
@@ -3026,14 +3073,14 @@ vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_25, float end_8) {
     comb_11 = _e4;
     int _e11 = comb_11.first;
     node_11 = (_e11 - 2);
-    bool loop_init_26 = true;
+    bool loop_init_27 = true;
     while(true) {
-        if (!loop_init_26) {
+        if (!loop_init_27) {
             int _e35 = node_11;
             int _e37 = vol_in_next_node(comb_11, _e35, 2);
             node_11 = _e37;
         }
-        loop_init_26 = false;
+        loop_init_27 = false;
         int _e15 = node_11;
         int _e17 = comb_11.last;
         if ((_e15 <= _e17)) {
@@ -3129,42 +3176,57 @@ vec3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact) {
 
 float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float sides_6[1]) {
     float distance_9 = 0.0;
-    uint solid_13 = 0u;
+    float others_1 = 0.0;
+    float farthest_1 = -4000000.0;
+    uint solid_14 = 0u;
     vec3 point_7 = (contact_1.position + (contact_1.normal * height));
     distance_9 = height;
-    bool loop_init_27 = true;
+    others_1 = height;
+    bool loop_init_28 = true;
     while(true) {
-        if (!loop_init_27) {
-            uint _e39 = solid_13;
-            solid_13 = (_e39 + 1u);
+        if (!loop_init_28) {
+            uint _e56 = solid_14;
+            solid_14 = (_e56 + 1u);
         }
-        loop_init_27 = false;
-        uint _e10 = solid_13;
-        if ((_e10 < VOL_IN_OBJECT_COUNT)) {
+        loop_init_28 = false;
+        uint _e13 = solid_14;
+        if ((_e13 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e13 = solid_13;
-            uint _e14 = vol_in_object_word(_e13);
-            vec3 _e17 = vol_in_word3_((_e14 + 1u));
-            vec3 lo_4 = (_e17 - vec3(height));
-            vec3 _e22 = vol_in_word3_((_e14 + 4u));
-            vec3 hi_4 = (_e22 + vec3(height));
-            bool _e25 = vol_in_contains(lo_4, hi_4, point_7);
-            float _e26 = vol_frame_word(_e14);
-            if ((_e25 && (_e26 != 0.0))) {
-                float _e30 = distance_9;
-                uint _e31 = solid_13;
-                float _e33 = sides_6[_e31];
-                uint _e34 = solid_13;
-                float _e35 = vol_in_object_distance(_e34, point_7);
-                distance_9 = min(_e30, (_e33 * _e35));
+            uint _e16 = solid_14;
+            bool _e17 = vol_in_joins_the_one_before(_e16);
+            uint _e18 = solid_14;
+            float _e20 = sides_6[_e18];
+            if (!((_e17 && (_e20 < 0.0)))) {
+                float _e25 = distance_9;
+                others_1 = _e25;
+                farthest_1 = -4000000.0;
+            }
+            uint _e27 = solid_14;
+            uint _e28 = vol_in_object_word(_e27);
+            vec3 _e31 = vol_in_word3_((_e28 + 1u));
+            vec3 lo_4 = (_e31 - vec3(height));
+            vec3 _e36 = vol_in_word3_((_e28 + 4u));
+            vec3 hi_4 = (_e36 + vec3(height));
+            bool _e39 = vol_in_contains(lo_4, hi_4, point_7);
+            float _e40 = vol_frame_word(_e28);
+            if ((_e39 && (_e40 != 0.0))) {
+                float _e44 = farthest_1;
+                uint _e45 = solid_14;
+                float _e47 = sides_6[_e45];
+                uint _e48 = solid_14;
+                float _e49 = vol_in_object_distance(_e48, point_7);
+                farthest_1 = max(_e44, (_e47 * _e49));
+                float _e52 = others_1;
+                float _e53 = farthest_1;
+                distance_9 = min(_e52, _e53);
             }
         }
     }
-    float _e41 = distance_9;
-    return _e41;
+    float _e58 = distance_9;
+    return _e58;
 }
 
 float vol_in_openness(Vol_in_Contact contact_2, float reach) {
@@ -3172,34 +3234,33 @@ float vol_in_openness(Vol_in_Contact contact_2, float reach) {
     float sides_7[1] = float[1](0.0);
     float hidden = 0.0;
     uint index_18 = 0u;
-    float _e4[1] = vol_in_find_sides();
-    sides_7 = _e4;
-    bool loop_init_28 = true;
+    vol_in_find_sides(sides_7);
+    bool loop_init_29 = true;
     while(true) {
-        if (!loop_init_28) {
-            uint _e36 = index_18;
-            index_18 = (_e36 + 1u);
+        if (!loop_init_29) {
+            uint _e35 = index_18;
+            index_18 = (_e35 + 1u);
         }
-        loop_init_28 = false;
-        uint _e10 = index_18;
-        if ((_e10 < VOL_IN_WEIGHT_COUNT)) {
+        loop_init_29 = false;
+        uint _e9 = index_18;
+        if ((_e9 < VOL_IN_WEIGHT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e13 = index_18;
-            float share = (float((_e13 + 1u)) / 5.0);
+            uint _e12 = index_18;
+            float share = (float((_e12 + 1u)) / 5.0);
             float height_1 = (share * reach);
-            float _e20 = vol_in_distance_above(contact_2, height_1, sides_7);
-            float lack = max(((height_1 - _e20) / height_1), 0.0);
-            float _e25 = hidden;
-            uint _e26 = index_18;
-            float _e28 = weights_3[_e26];
-            hidden = (_e25 + (_e28 * min((0.5 * lack), 1.0)));
+            float _e19 = vol_in_distance_above(contact_2, height_1, sides_7);
+            float lack = max(((height_1 - _e19) / height_1), 0.0);
+            float _e24 = hidden;
+            uint _e25 = index_18;
+            float _e27 = weights_3[_e25];
+            hidden = (_e24 + (_e27 * min((0.5 * lack), 1.0)));
         }
     }
-    float _e38 = hidden;
-    return (1.0 - min((_e38 / VOL_IN_WEIGHT_SUM), 1.0));
+    float _e37 = hidden;
+    return (1.0 - min((_e37 / VOL_IN_WEIGHT_SUM), 1.0));
 }
 
 vec3 vol_in_answer(Vol_in_Response response, Vol_in_Contact contact_3, Vol_in_Arriving lamp_1, float cosine, vec3 direction_1) {
@@ -3223,13 +3284,13 @@ vec3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4) {
     color = _e15.emitted;
     uint _e30 = vol_in_light_count();
     uint count_6 = (answers ? _e30 : 0u);
-    bool loop_init_29 = true;
+    bool loop_init_30 = true;
     while(true) {
-        if (!loop_init_29) {
+        if (!loop_init_30) {
             uint _e69 = light_1;
             light_1 = (_e69 + 1u);
         }
-        loop_init_29 = false;
+        loop_init_30 = false;
         uint _e34 = light_1;
         if ((_e34 < count_6)) {
         } else {
@@ -3287,13 +3348,13 @@ void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_1
         stop = Vol_in_PanelEnd(nothing, vec3(0.0), _e15.y, (_e14.next < 0.0));
         uvec2 _e36 = vol_in_new_ends(own_8, _e14);
         end_11 = _e36.x;
-        bool loop_init_30 = true;
+        bool loop_init_31 = true;
         while(true) {
-            if (!loop_init_30) {
+            if (!loop_init_31) {
                 uint _e60 = end_11;
                 end_11 = (_e60 + 1u);
             }
-            loop_init_30 = false;
+            loop_init_31 = false;
             uint _e39 = end_11;
             if ((_e39 < _e36.y)) {
             } else {
@@ -3469,13 +3530,13 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays s
     bool local_7 = false;
     vec3 _e5 = vol_in_ray_at(ray_35, t_38);
     uint _e6 = vol_in_light_count();
-    bool loop_init_31 = true;
+    bool loop_init_32 = true;
     while(true) {
-        if (!loop_init_31) {
+        if (!loop_init_32) {
             uint _e31 = light_5;
             light_5 = (_e31 + 1u);
         }
-        loop_init_31 = false;
+        loop_init_32 = false;
         uint _e9 = light_5;
         if ((_e9 < _e6)) {
         } else {
@@ -3624,14 +3685,14 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
     comb_13 = _e8;
     int _e12 = comb_13.first;
     node_14 = (_e12 - 1);
-    bool loop_init_32 = true;
+    bool loop_init_33 = true;
     while(true) {
-        if (!loop_init_32) {
+        if (!loop_init_33) {
             int _e54 = node_14;
             int _e56 = vol_in_next_node(comb_13, _e54, 1);
             node_14 = _e56;
         }
-        loop_init_32 = false;
+        loop_init_33 = false;
         int _e16 = node_14;
         int _e18 = comb_13.last;
         if ((_e16 <= _e18)) {
@@ -3726,14 +3787,14 @@ Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_39, float end_15) {
     comb_14 = _e8;
     int _e12 = comb_14.first;
     node_15 = (_e12 - 2);
-    bool loop_init_33 = true;
+    bool loop_init_34 = true;
     while(true) {
-        if (!loop_init_33) {
+        if (!loop_init_34) {
             int _e37 = node_15;
             int _e39 = vol_in_next_node(comb_14, _e37, 2);
             node_15 = _e39;
         }
-        loop_init_33 = false;
+        loop_init_34 = false;
         int _e16 = node_15;
         int _e18 = comb_14.last;
         if ((_e16 <= _e18)) {

@@ -1368,6 +1368,7 @@ const VOL_IN_AT_OBJECTS: u32 = 27u;
 const VOL_IN_AT_MEDIA: u32 = 27u;
 const VOL_IN_AT_LIGHTS: u32 = 35u;
 const VOL_IN_AT_CELLS: u32 = 75u;
+const VOL_IN_ROW_WORDS: u32 = 0u;
 const VOL_IN_CORRECTED: bool = true;
 const VOL_IN_SOFT_LIGHTS: bool = false;
 const VOL_IN_OCCLUDING_LIGHTS: bool = false;
@@ -1375,6 +1376,10 @@ const VOL_IN_LIGHT_GRIDS: bool = true;
 const VOL_IN_LIT_MEDIA: bool = true;
 const VOL_IN_STYLES: bool = false;
 const VOL_IN_MARCHED_SHAFTS: bool = false;
+
+fn vol_in_joins_the_one_before(object: u32) -> bool {
+    return false;
+}
 
 fn vol_in_object_distance(index: u32, p: vec3f) -> f32 {
     switch index {
@@ -1857,41 +1862,51 @@ fn vol_in_object_word(solid: u32) -> u32 {
     return VOL_IN_AT_OBJECTS + (VOL_IN_OBJECT_WORDS * solid);
 }
 
-// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye.
-fn vol_in_find_sides() -> array<f32, VOL_IN_OBJECT_SLOTS> {
-    var sides: array<f32, VOL_IN_OBJECT_SLOTS>;
+// A caller hands over the arrays that it wants filled: to return one copies each of its elements.
+
+// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye, with all that they
+// are parts of.
+fn vol_in_find_sides(sides: ptr<function, array<f32, VOL_IN_OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
         let at = vol_in_object_word(solid);
         let eye = vol_in_word3(VOL_IN_AT_EYE);
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
         if (vol_in_contains(vol_in_word3(at + 1u), vol_in_word3(at + 4u), eye) & (vol_frame_word(at) != 0.0)) {
-            sides[solid] = select(1.0, -1.0, vol_in_object_distance(solid, eye) < 0.0);
+            (*sides)[solid] = select(1.0, -1.0, vol_in_object_distance(solid, eye) < 0.0);
+        }
+        if (vol_in_joins_the_one_before(solid)) {
+            (*sides)[solid] = min((*sides)[solid], (*sides)[solid - 1u]);
         }
     }
-    return sides;
+    for (var solid = VOL_IN_OBJECT_COUNT; solid > 1u; solid--) {
+        if (vol_in_joins_the_one_before(solid - 1u)) {
+            (*sides)[solid - 2u] = min((*sides)[solid - 2u], (*sides)[solid - 1u]);
+        }
+    }
 }
 
-fn vol_in_no_sides() -> array<f32, VOL_IN_OBJECT_SLOTS> {
-    var sides: array<f32, VOL_IN_OBJECT_SLOTS>;
+fn vol_in_no_sides(sides: ptr<function, array<f32, VOL_IN_OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
     }
-    return sides;
 }
 
 // Parts of the ray in the box of each solid, a little longer than rounding can make them; all of the
 // ray for a solid that is seen from within, since it ends where the box may end.
-fn vol_in_object_spans(ray: Vol_in_Ray, sides: ptr<function, array<f32, VOL_IN_OBJECT_SLOTS>>) -> array<Vol_in_Span, VOL_IN_OBJECT_SLOTS> {
-    var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
+fn vol_in_object_spans(
+    ray: Vol_in_Ray,
+    sides: ptr<function, array<f32, VOL_IN_OBJECT_SLOTS>>,
+    spans: ptr<function, array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
         let at = vol_in_object_word(solid);
         let span = vol_in_loosened(vol_in_slab(ray, vol_in_word3(at + 1u), vol_in_word3(at + 4u)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(VOL_IN_FAR, span.entry, there);
-        let leave = select(span.leave, VOL_IN_FAR, (*sides)[solid] < 0.0);
-        spans[solid].leave = select(-VOL_IN_FAR, leave, there);
+        (*spans)[solid].entry = select(VOL_IN_FAR, span.entry, there);
+        let is_within = ((*sides)[solid] < 0.0) & (span.entry <= span.leave);
+        let leave = select(span.leave, VOL_IN_FAR, is_within);
+        (*spans)[solid].leave = select(-VOL_IN_FAR, leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray, `before` that of the last step.
@@ -1903,7 +1918,16 @@ fn vol_in_nearest(
     before: f32,
 ) -> Vol_in_Near {
     var near = Vol_in_Near(VOL_IN_FAR, VOL_IN_FAR, 0u, VOL_IN_FAR, 0.0);
+    // What was near without the parts of a union that holds the eye, and the farthest wall of those: a ray is
+    // inside as long as it is in one of them.
+    var others = near;
+    var farthest = -VOL_IN_FAR;
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
+        let joined = vol_in_joins_the_one_before(solid) & ((*sides)[solid] < 0.0);
+        if (!joined) {
+            others = near;
+            farthest = -VOL_IN_FAR;
+        }
         let span = (*spans)[solid];
         let some = span.entry <= span.leave;
         let ahead = some & (t < span.entry);
@@ -1912,11 +1936,14 @@ fn vol_in_nearest(
             near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * vol_in_object_distance(solid, vol_in_ray_at(ray, t));
-            near.value = min(near.value, seen);
             let safe = vol_in_shorten(solid, ray, t, t - before, seen);
-            let closer = safe < near.distance;
-            near.distance = select(near.distance, safe, closer);
-            near.solid = select(near.solid, solid, closer);
+            if (!joined | (seen > farthest)) {
+                farthest = seen;
+                near.value = min(others.value, seen);
+                let closer = safe < others.distance;
+                near.distance = select(others.distance, safe, closer);
+                near.solid = select(others.solid, solid, closer);
+            }
         }
     }
     return near;
@@ -1934,8 +1961,10 @@ fn vol_in_advance(near: Vol_in_Near, step: u32, least: f32) -> f32 {
 
 // First surface on the ray.
 fn vol_in_trace(ray: Vol_in_Ray) -> Vol_in_Contact {
-    var sides = vol_in_find_sides();
-    var spans = vol_in_object_spans(ray, &sides);
+    var sides: array<f32, VOL_IN_OBJECT_SLOTS>;
+    var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
+    vol_in_find_sides(&sides);
+    vol_in_object_spans(ray, &sides, &spans);
     var t = 0.0;
     var before = 0.0;
     var hit = false;
@@ -2163,8 +2192,10 @@ fn vol_in_enters(distance: f32, t: f32, least: f32) -> bool {
 
 // Whether the ray enters a solid before it reaches the light.
 fn vol_in_blocked(ray: Vol_in_Ray, distance: f32, least: f32) -> bool {
-    var sides = vol_in_no_sides();
-    var spans = vol_in_object_spans(ray, &sides);
+    var sides: array<f32, VOL_IN_OBJECT_SLOTS>;
+    var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
+    vol_in_no_sides(&sides);
+    vol_in_object_spans(ray, &sides, &spans);
     let end = min(distance, VOL_IN_FAR);
     var t = 0.0;
     var before = 0.0;
@@ -2397,7 +2428,8 @@ fn vol_in_lit_part_of(ray: Vol_in_Ray, distance: f32, least_step: f32, slope: f3
 // Walks along the axis of a cone and keeps the smallest angle to a solid.
 fn vol_in_walk(ray: Vol_in_Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
     var lowest = vol_in_squared_sine(VOL_IN_CLEAR * slope);
-    var spans = vol_in_cone_spans(ray, distance, slope);
+    var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
+    vol_in_cone_spans(ray, distance, slope, &spans);
     let end = min(distance, VOL_IN_FAR);
     var t = 0.0;
     var older = vec2f(0.0);
@@ -2427,8 +2459,12 @@ fn vol_in_walk(ray: Vol_in_Ray, distance: f32, least_step: f32, slope: f32) -> f
 }
 
 // Parts of the ray where a solid's box is within the cone.
-fn vol_in_cone_spans(ray: Vol_in_Ray, distance: f32, slope: f32) -> array<Vol_in_Span, VOL_IN_OBJECT_SLOTS> {
-    var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
+fn vol_in_cone_spans(
+    ray: Vol_in_Ray,
+    distance: f32,
+    slope: f32,
+    spans: ptr<function, array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
         let at = vol_in_object_word(solid);
         let lo = vol_in_word3(at + 1u);
@@ -2437,10 +2473,9 @@ fn vol_in_cone_spans(ray: Vol_in_Ray, distance: f32, slope: f32) -> array<Vol_in
         let width = (VOL_IN_CLEAR * slope) * min(farthest, distance);
         let span = vol_in_loosened(vol_in_slab(ray, lo - vec3f(width), hi + vec3f(width)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(VOL_IN_FAR, span.entry, there);
-        spans[solid].leave = select(-VOL_IN_FAR, span.leave, there);
+        (*spans)[solid].entry = select(VOL_IN_FAR, span.entry, there);
+        (*spans)[solid].leave = select(-VOL_IN_FAR, span.leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray.
@@ -2556,7 +2591,8 @@ const VOL_IN_WEIGHT_SUM: f32 = 31.0;
 // How open a contact is, 0 to 1, to what is within a distance of it.
 fn vol_in_openness(contact: Vol_in_Contact, reach: f32) -> f32 {
     var weights = VOL_IN_WEIGHTS;
-    var sides = vol_in_find_sides();
+    var sides: array<f32, VOL_IN_OBJECT_SLOTS>;
+    vol_in_find_sides(&sides);
     var hidden = 0.0;
     for (var index = 0u; index < VOL_IN_WEIGHT_COUNT; index++) {
         let share = f32(index + 1u) / f32(VOL_IN_WEIGHT_COUNT);
@@ -2576,13 +2612,21 @@ fn vol_in_distance_above(
 ) -> f32 {
     let point = contact.position + (contact.normal * height);
     var distance = height;
+    // That without the parts of a union that holds the eye, whose farthest wall counts.
+    var others = height;
+    var farthest = -VOL_IN_FAR;
     for (var solid = 0u; solid < VOL_IN_OBJECT_COUNT; solid++) {
+        if (!(vol_in_joins_the_one_before(solid) & ((*sides)[solid] < 0.0))) {
+            others = distance;
+            farthest = -VOL_IN_FAR;
+        }
         // A solid whose box is farther than the height hides nothing.
         let at = vol_in_object_word(solid);
         let lo = vol_in_word3(at + 1u) - vec3f(height);
         let hi = vol_in_word3(at + 4u) + vec3f(height);
         if (vol_in_contains(lo, hi, point) & (vol_frame_word(at) != 0.0)) {
-            distance = min(distance, (*sides)[solid] * vol_in_object_distance(solid, point));
+            farthest = max(farthest, (*sides)[solid] * vol_in_object_distance(solid, point));
+            distance = min(others, farthest);
         }
     }
     return distance;

@@ -7,7 +7,7 @@
 //   1 vol_curves       curves of the frame
 //   2 vol_permutation  table of the noise
 //   3 vol_frame        f32: the rectangle, the camera, what is there; see the constants AT_...
-//   4 vol_input        f32: depths of the grids of lights, tables of styles
+//   4 vol_input        f32: numbers of objects, depths of the grids of lights, tables of styles
 //   5 vol_output       u32: 15 words per pixel of the whole picture, rows from the top, 0 before
 //                      the first dispatch: bits of f32: radiance rgb, transmittance rgb, depth (1e30:
 //                      none); whole numbers, how much was computed: rays, samples of media,
@@ -838,27 +838,6 @@ struct VolOut10 {
   v9: f32,
 }
 
-// radius slope
-fn vol_f0_radius_slope(x0: f32, x1: f32) -> vec2f {
-  let v0: f32 = 0.0f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 + x0);
-  let v4: f32 = (v1 * v3);
-  return vec2f(v4, v0);
-}
-
-// radius
-fn vol_f1_radius(x0: f32, x1: f32) -> f32 {
-  let v0: f32 = 0.08f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 * x0);
-  let v4: f32 = (v3 * v1);
-  let v5: f32 = (v0 + v4);
-  return v5;
-}
-
 // region:cloud
 fn vol_f2_region_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v0: f32 = 0.0f;
@@ -1036,17 +1015,6 @@ fn vol_f5_phase_cloud(x0: f32, x1: f32) -> f32 {
   return v10;
 }
 
-// radius
-fn vol_f6_radius(x0: f32, x1: f32) -> f32 {
-  let v0: f32 = 0.08f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 * x0);
-  let v4: f32 = (v3 * v1);
-  let v5: f32 = (v0 + v4);
-  return v5;
-}
-
 // density:cloud
 fn vol_f7_density_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v0: f32 = vol_uniforms[5].w;
@@ -1208,6 +1176,7 @@ const AT_OBJECTS: u32 = 27u;
 const AT_MEDIA: u32 = 27u;
 const AT_LIGHTS: u32 = 35u;
 const AT_CELLS: u32 = 75u;
+const ROW_WORDS: u32 = 0u;
 const CORRECTED: bool = true;
 const SOFT_LIGHTS: bool = false;
 const OCCLUDING_LIGHTS: bool = false;
@@ -1215,6 +1184,10 @@ const LIGHT_GRIDS: bool = true;
 const LIT_MEDIA: bool = true;
 const STYLES: bool = false;
 const MARCHED_SHAFTS: bool = false;
+
+fn joins_the_one_before(object: u32) -> bool {
+    return false;
+}
 
 fn object_distance(index: u32, p: vec3f) -> f32 {
     counted_evaluations += 1u;
@@ -1711,41 +1684,51 @@ fn object_word(solid: u32) -> u32 {
     return AT_OBJECTS + (OBJECT_WORDS * solid);
 }
 
-// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye.
-fn find_sides() -> array<f32, OBJECT_SLOTS> {
-    var sides: array<f32, OBJECT_SLOTS>;
+// A caller hands over the arrays that it wants filled: to return one copies each of its elements.
+
+// Sign of each solid's distance as the camera sees it: -1 for those that hold the eye, with all that they
+// are parts of.
+fn find_sides(sides: ptr<function, array<f32, OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let eye = word3(AT_EYE);
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
         if (contains(word3(at + 1u), word3(at + 4u), eye) & (vol_frame_word(at) != 0.0)) {
-            sides[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
+            (*sides)[solid] = select(1.0, -1.0, object_distance(solid, eye) < 0.0);
+        }
+        if (joins_the_one_before(solid)) {
+            (*sides)[solid] = min((*sides)[solid], (*sides)[solid - 1u]);
         }
     }
-    return sides;
+    for (var solid = OBJECT_COUNT; solid > 1u; solid--) {
+        if (joins_the_one_before(solid - 1u)) {
+            (*sides)[solid - 2u] = min((*sides)[solid - 2u], (*sides)[solid - 1u]);
+        }
+    }
 }
 
-fn no_sides() -> array<f32, OBJECT_SLOTS> {
-    var sides: array<f32, OBJECT_SLOTS>;
+fn no_sides(sides: ptr<function, array<f32, OBJECT_SLOTS>>) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
-        sides[solid] = 1.0;
+        (*sides)[solid] = 1.0;
     }
-    return sides;
 }
 
 // Parts of the ray in the box of each solid, a little longer than rounding can make them; all of the
 // ray for a solid that is seen from within, since it ends where the box may end.
-fn object_spans(ray: Ray, sides: ptr<function, array<f32, OBJECT_SLOTS>>) -> array<Span, OBJECT_SLOTS> {
-    var spans: array<Span, OBJECT_SLOTS>;
+fn object_spans(
+    ray: Ray,
+    sides: ptr<function, array<f32, OBJECT_SLOTS>>,
+    spans: ptr<function, array<Span, OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let span = loosened(slab(ray, word3(at + 1u), word3(at + 4u)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(FAR, span.entry, there);
-        let leave = select(span.leave, FAR, (*sides)[solid] < 0.0);
-        spans[solid].leave = select(-FAR, leave, there);
+        (*spans)[solid].entry = select(FAR, span.entry, there);
+        let is_within = ((*sides)[solid] < 0.0) & (span.entry <= span.leave);
+        let leave = select(span.leave, FAR, is_within);
+        (*spans)[solid].leave = select(-FAR, leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray, `before` that of the last step.
@@ -1757,7 +1740,16 @@ fn nearest(
     before: f32,
 ) -> Near {
     var near = Near(FAR, FAR, 0u, FAR, 0.0);
+    // What was near without the parts of a union that holds the eye, and the farthest wall of those: a ray is
+    // inside as long as it is in one of them.
+    var others = near;
+    var farthest = -FAR;
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        let joined = joins_the_one_before(solid) & ((*sides)[solid] < 0.0);
+        if (!joined) {
+            others = near;
+            farthest = -FAR;
+        }
         let span = (*spans)[solid];
         let some = span.entry <= span.leave;
         let ahead = some & (t < span.entry);
@@ -1766,11 +1758,14 @@ fn nearest(
             near.rest = max(near.rest, span.leave - t);
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
-            near.value = min(near.value, seen);
             let safe = shorten(solid, ray, t, t - before, seen);
-            let closer = safe < near.distance;
-            near.distance = select(near.distance, safe, closer);
-            near.solid = select(near.solid, solid, closer);
+            if (!joined | (seen > farthest)) {
+                farthest = seen;
+                near.value = min(others.value, seen);
+                let closer = safe < others.distance;
+                near.distance = select(others.distance, safe, closer);
+                near.solid = select(others.solid, solid, closer);
+            }
         }
     }
     return near;
@@ -1788,8 +1783,10 @@ fn advance(near: Near, step: u32, least: f32) -> f32 {
 
 // First surface on the ray.
 fn trace(ray: Ray) -> Contact {
-    var sides = find_sides();
-    var spans = object_spans(ray, &sides);
+    var sides: array<f32, OBJECT_SLOTS>;
+    var spans: array<Span, OBJECT_SLOTS>;
+    find_sides(&sides);
+    object_spans(ray, &sides, &spans);
     var t = 0.0;
     var before = 0.0;
     var hit = false;
@@ -2018,8 +2015,10 @@ fn enters(distance: f32, t: f32, least: f32) -> bool {
 
 // Whether the ray enters a solid before it reaches the light.
 fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
-    var sides = no_sides();
-    var spans = object_spans(ray, &sides);
+    var sides: array<f32, OBJECT_SLOTS>;
+    var spans: array<Span, OBJECT_SLOTS>;
+    no_sides(&sides);
+    object_spans(ray, &sides, &spans);
     let end = min(distance, FAR);
     var t = 0.0;
     var before = 0.0;
@@ -2253,7 +2252,8 @@ fn lit_part_of(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
 fn walk(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
     counted_rays += 1u;
     var lowest = squared_sine(CLEAR * slope);
-    var spans = cone_spans(ray, distance, slope);
+    var spans: array<Span, OBJECT_SLOTS>;
+    cone_spans(ray, distance, slope, &spans);
     let end = min(distance, FAR);
     var t = 0.0;
     var older = vec2f(0.0);
@@ -2283,8 +2283,12 @@ fn walk(ray: Ray, distance: f32, least_step: f32, slope: f32) -> f32 {
 }
 
 // Parts of the ray where a solid's box is within the cone.
-fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> {
-    var spans: array<Span, OBJECT_SLOTS>;
+fn cone_spans(
+    ray: Ray,
+    distance: f32,
+    slope: f32,
+    spans: ptr<function, array<Span, OBJECT_SLOTS>>,
+) {
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
         let at = object_word(solid);
         let lo = word3(at + 1u);
@@ -2293,10 +2297,9 @@ fn cone_spans(ray: Ray, distance: f32, slope: f32) -> array<Span, OBJECT_SLOTS> 
         let width = (CLEAR * slope) * min(farthest, distance);
         let span = loosened(slab(ray, lo - vec3f(width), hi + vec3f(width)));
         let there = vol_frame_word(at) != 0.0;
-        spans[solid].entry = select(FAR, span.entry, there);
-        spans[solid].leave = select(-FAR, span.leave, there);
+        (*spans)[solid].entry = select(FAR, span.entry, there);
+        (*spans)[solid].leave = select(-FAR, span.leave, there);
     }
-    return spans;
 }
 
 // What is around a place on the ray.
@@ -2412,7 +2415,8 @@ const WEIGHT_SUM: f32 = 31.0;
 // How open a contact is, 0 to 1, to what is within a distance of it.
 fn openness(contact: Contact, reach: f32) -> f32 {
     var weights = WEIGHTS;
-    var sides = find_sides();
+    var sides: array<f32, OBJECT_SLOTS>;
+    find_sides(&sides);
     var hidden = 0.0;
     for (var index = 0u; index < WEIGHT_COUNT; index++) {
         let share = f32(index + 1u) / f32(WEIGHT_COUNT);
@@ -2432,13 +2436,21 @@ fn distance_above(
 ) -> f32 {
     let point = contact.position + (contact.normal * height);
     var distance = height;
+    // That without the parts of a union that holds the eye, whose farthest wall counts.
+    var others = height;
+    var farthest = -FAR;
     for (var solid = 0u; solid < OBJECT_COUNT; solid++) {
+        if (!(joins_the_one_before(solid) & ((*sides)[solid] < 0.0))) {
+            others = distance;
+            farthest = -FAR;
+        }
         // A solid whose box is farther than the height hides nothing.
         let at = object_word(solid);
         let lo = word3(at + 1u) - vec3f(height);
         let hi = word3(at + 4u) + vec3f(height);
         if (contains(lo, hi, point) & (vol_frame_word(at) != 0.0)) {
-            distance = min(distance, (*sides)[solid] * object_distance(solid, point));
+            farthest = max(farthest, (*sides)[solid] * object_distance(solid, point));
+            distance = min(others, farthest);
         }
     }
     return distance;

@@ -112,6 +112,16 @@ impl Bend {
     }
 }
 
+/// The axis along which a unit normal is known to point, and its number there, 1 or -1. The absolute value is exact, as
+/// `x - 2 min(x, 0)` is; but drivers may add what is subtracted next to `x` first, which rounds.
+fn axis_of(graph: &Graph, normal: [ValueId; 3]) -> Option<(usize, f64)> {
+    let normal = normal.map(|component| graph.constant(component));
+    let (axis, sign) =
+        normal.iter().enumerate().find_map(|(axis, &n)| Some((axis, n.filter(|n| n.abs() == 1.0)?)))?;
+    let is_along = (0..3).all(|other| other == axis || normal[other] == Some(0.0));
+    is_along.then_some((axis, sign))
+}
+
 impl Transform {
     /// Whether solids keep their shape, up to their size: then the union of two is moved as each of them is.
     pub(super) fn keeps_shape(&self) -> bool {
@@ -141,6 +151,14 @@ impl Transform {
             Self::Rotate { columns } => columns.map(|column| graph.dot(&column, &p)),
             Self::Scale { factor } => p.map(|v| graph.div(v, *factor)),
             Self::Stretch { factors, .. } => [0, 1, 2].map(|i| graph.div(p[i], factors[i])),
+            Self::Mirror { normal } if let Some((axis, sign)) = axis_of(graph, *normal) => {
+                let mut mirrored = p;
+                mirrored[axis] = graph.apply(Op::Abs, &[p[axis]]);
+                if sign < 0.0 {
+                    mirrored[axis] = graph.apply(Op::Neg, &[mirrored[axis]]);
+                }
+                mirrored
+            }
             Self::Mirror { normal } => {
                 let (zero, two) = (graph.number(0.0), graph.number(2.0));
                 let height = graph.dot(normal, &p);

@@ -21,7 +21,6 @@ pub mod narrow;
 pub(crate) mod unclip;
 
 use crate::ir::{Function, Inst, Module, verify};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A pass; true if it changed the function.
@@ -41,13 +40,13 @@ fn in_bodies(function: &mut Function, pass: Pass) -> bool {
     changed
 }
 
-/// Runs the pipeline on every function, the frame function included; on many at the same time.
+/// Runs the pipeline on every function, the frame function included.
 pub fn run(module: &mut Module) {
     for (name, pass) in PIPELINE {
         pass(&mut module.frame);
-        module.functions.par_iter_mut().for_each(|function| {
+        for function in &mut module.functions {
             pass(function);
-        });
+        }
         // Curve indices are not checked: how many there are is not known here.
         debug_assert_eq!(verify::module(module, u32::MAX), Ok(()), "after {name}");
     }

@@ -11,7 +11,6 @@ use crate::ops::interval::Interval;
 use crate::ops::{Op, operation};
 use crate::passes::narrow::{any_input, narrow as narrowed, uniforms};
 use crate::passes::{cse, dce};
-use rayon::prelude::*;
 use std::collections::BTreeSet;
 use vol_language::hir;
 
@@ -23,12 +22,13 @@ pub(super) fn narrow(
     origins: &mut [Origins],
 ) -> Vec<String> {
     let uniforms = uniforms(&module.frame, &frame_inputs(hir, param_inputs, &module.frame));
-    let functions = module.functions.par_iter_mut().zip(origins);
-    let all: Vec<String> =
-        functions.filter_map(|(function, origins)| narrow_one(function, origins, &uniforms)).collect();
+    let functions = module.functions.iter_mut().zip(origins);
     // Parts of one solid have functions of one name.
     let mut said = BTreeSet::new();
-    all.into_iter().filter(|sentence| said.insert(sentence.clone())).collect()
+    functions
+        .filter_map(|(function, origins)| narrow_one(function, origins, &uniforms))
+        .filter(|sentence| said.insert(sentence.clone()))
+        .collect()
 }
 
 /// Takes out of a function what ranges decide; a sentence about that.

@@ -114,15 +114,20 @@ fn functions(
         .map(|(index, _)| Definition { comments: comments(index), ..Definition::of(&program.module, index) })
         .collect();
     let families = Families::of(program);
-    let numbers = families.all.iter().zip(program.module.functions.len()..);
-    all.extend(numbers.map(|(family, index)| {
+    all.extend(families.all.iter().enumerate().map(|(number, family)| {
         let of_first = comments(family.first.index());
         let comment = |origin: &Option<usize>| of_first.get((*origin)?)?.clone();
         let comments = family.origins.iter().map(comment).collect();
+        let index = family_index(program, number);
         Definition { function: &family.function, index, comments, curves: family.curves.clone() }
     }));
     let used = if program.styles.is_empty() { "vol_exp2(" } else { "vol_exp2(vol_atan2(" };
     definitions(rows, &all, used)
+}
+
+/// The number of a family in the names of functions: families come after the functions of the program.
+fn family_index(program: &Program, number: usize) -> usize {
+    program.module.functions.len() + number
 }
 
 /// A function to be written.

@@ -22,7 +22,7 @@ use super::near::Met;
 use super::scene::{Integrator, Stride};
 use super::shadow::ShadowRay;
 use super::stride::Ahead;
-use super::surface::{EPSILON, MAX_STEPS, by_ray};
+use super::surface::{EPSILON, MAX_STEPS};
 use crate::real::{Real, Vec3, add, length, scale, sub};
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -331,4 +331,11 @@ fn clear_depth<R: Real>(clear: R, end: [f32; 2], place: [f32; 2]) -> R {
     let y = R::from_f32(place[1]) - R::from_f32(end[1]);
     let aside = (x * x + y * y).sqrt();
     if clear > R::ZERO { clear - aside } else { -R::from_f32(CLEAR) }
+}
+
+/// Which of those that are still on their way is on each of `count` rays.
+fn by_ray(count: usize, walking: impl Iterator<Item = usize>) -> Vec<Option<usize>> {
+    let mut which = vec![None; count];
+    walking.enumerate().for_each(|(index, ray)| which[ray] = Some(index));
+    which
 }

@@ -279,13 +279,6 @@ impl<R: Real> Bracket<R> {
     }
 }
 
-/// Which of those that are still on their way is on each of `count` rays.
-pub(super) fn by_ray(count: usize, walking: impl Iterator<Item = usize>) -> Vec<Option<usize>> {
-    let mut which = vec![None; count];
-    walking.enumerate().for_each(|(index, ray)| which[ray] = Some(index));
-    which
-}
-
 /// The place of a hit, its normal and how exact it is.
 fn contact<R: Real>(
     scene: &Scene<R>,

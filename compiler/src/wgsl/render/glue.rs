@@ -100,7 +100,7 @@ enum Callee {
 /// A call of a family with the numbers of object `index`.
 fn family_call(program: &Program, families: &Families, number: usize, arguments: &str) -> String {
     let family = &families.all[number];
-    let name = names::function(family_index(program, number), &family.function.name);
+    let name = names::function(crate::wgsl::family_index(program, number), &family.function.name);
     let numbers = (0..family.numbers).map(|word| format!("vol_input_word(row + {word}u)"));
     let arguments: Vec<String> = std::iter::once(arguments.to_owned()).chain(numbers).collect();
     format!(
@@ -108,11 +108,6 @@ fn family_call(program: &Program, families: &Families, number: usize, arguments:
         family.at,
         arguments.join(", ")
     )
-}
-
-/// The number of a family in the names of functions: they come after those of the program.
-pub(super) fn family_index(program: &Program, number: usize) -> usize {
-    program.module.functions.len() + number
 }
 
 /// A function that picks the function of one object or medium by index.

@@ -26,9 +26,13 @@
 //! their values to the end of a step, and an interpreter replaces the state between steps.
 
 mod alloc;
+mod link;
+
+pub use link::{Carried, Link, links};
 
 use crate::ir::{Function, ValueId};
-use crate::ops::Op;
+use crate::ops::{Op, operation};
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 /// Most operands that an operation has.
@@ -123,6 +127,46 @@ pub enum TapeOp {
     },
 }
 
+impl TapeOp {
+    /// Whether it is a few vector instructions, and not a function or a loop: what all points can do one step after the
+    /// other.
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        match self {
+            Self::Constant { .. } | Self::Input { .. } | Self::Uniform { .. } | Self::ApplyScalar { .. } => {
+                true
+            }
+            Self::Apply { op, .. } => is_simple(*op),
+            Self::Loop { .. } => false,
+        }
+    }
+
+    /// The registers that it writes, in a tape with these loops.
+    #[must_use]
+    pub fn written(&self, loops: &[TapeLoop]) -> Range<usize> {
+        let (to, results) = match *self {
+            Self::Constant { to, .. }
+            | Self::Input { to, .. }
+            | Self::Uniform { to, .. }
+            | Self::ApplyScalar { to, .. } => (to, 1),
+            Self::Apply { op, to, .. } => (to, operation(op).results.len()),
+            Self::Loop { index, to } => (to, loops[index as usize].state()),
+        };
+        to.index()..to.index() + results
+    }
+
+    /// The registers that it reads, in a tape with these loops.
+    #[must_use]
+    pub fn operands<'a>(&'a self, loops: &'a [TapeLoop]) -> &'a [Register] {
+        match self {
+            Self::Constant { .. } | Self::Input { .. } | Self::Uniform { .. } => &[],
+            Self::Apply { op, args, .. } => &args[..operation(*op).args.len()],
+            Self::ApplyScalar { arg, .. } => std::slice::from_ref(arg),
+            Self::Loop { index, .. } => &loops[*index as usize].args,
+        }
+    }
+}
+
 /// A number that is the same for all points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scalar {
@@ -142,6 +186,16 @@ impl Scalar {
             Self::Uniform(index) => uniforms[index as usize],
         }
     }
+}
+
+/// Whether an operation is a few vector instructions, and not a function of its own.
+#[must_use]
+pub fn is_simple(op: Op) -> bool {
+    takes_scalar(op)
+        || matches!(
+            op,
+            Op::Neg | Op::Abs | Op::Floor | Op::Sqrt | Op::Equal | Op::And | Op::Or | Op::Not | Op::Select
+        )
 }
 
 /// Whether an operation may have a scalar for an operand: those of a few instructions that take two numbers.
@@ -187,6 +241,8 @@ pub struct Tape {
     pub values: Vec<ValueId>,
     /// The loops among them.
     pub loops: Vec<TapeLoop>,
+    /// How each step is joined to its neighbours.
+    pub links: Vec<Link>,
 }
 
 impl Tape {
@@ -200,6 +256,18 @@ impl Tape {
     #[must_use]
     pub fn with_own_registers(function: &Function) -> Self {
         alloc::number(function)
+    }
+
+    /// All steps with their links.
+    #[must_use]
+    pub fn steps(&self) -> (&[TapeOp], &[Link]) {
+        (&self.ops, &self.links)
+    }
+
+    /// The same tape with the links of its steps, whatever it had before.
+    #[must_use]
+    pub fn linked(self) -> Self {
+        Self { links: links(&self, |_| false), ..self }
     }
 
     /// Number of registers with those of loops: each has its own and a copy of its state, above those
@@ -246,7 +314,7 @@ mod tests {
         }
 
         fn apply(&mut self, op: Op, data: u32, _: &[ValueId], operands: &[f64]) -> ops::Results<f64> {
-            (ops::operation(op).meaning)(operands, Context { data, curves: &[] })
+            (operation(op).meaning)(operands, Context { data, curves: &[] })
         }
 
         fn repeat(&mut self, most: u32, body: &Function, operands: &[f64]) -> Vec<f64> {
@@ -254,39 +322,45 @@ mod tests {
         }
     }
 
-    /// The same from the tape. Registers start empty, or with the inputs of a loop's body; those of results that
-    /// nothing reads are emptied, so that a clobbered register shows.
+    /// The same from the tape, as its links tell. Registers start empty, or with the inputs of a loop's body; those of
+    /// results that nothing reads are emptied, so that a clobbered register shows.
     fn by_tape(tape: &Tape, inputs: &[f64], inside: bool) -> Vec<f64> {
         let mut registers: Vec<Option<f64>> = vec![None; tape.registers as usize];
         if inside {
             registers[..inputs.len()].copy_from_slice(&inputs.iter().map(|&x| Some(x)).collect::<Vec<_>>());
         }
-        for step in &tape.ops {
+        let mut last = f64::NAN;
+        for (step, link) in tape.ops.iter().zip(&tape.links) {
             let read = |r: &Register| registers[r.index()].expect("reads a register that was written");
+            let operands =
+                step.operands(&tape.loops).iter().enumerate().map(|(i, operand)| match (link.carried, i) {
+                    (Carried::First | Carried::Both, 0) | (Carried::Second | Carried::Both, 1) => last,
+                    _ => read(operand),
+                });
+            let operands: Vec<f64> = operands.collect();
             match *step {
                 TapeOp::Constant { to, value } => registers[to.index()] = Some(f64::from(value)),
                 TapeOp::Input { to, index } => registers[to.index()] = Some(inputs[index as usize]),
                 TapeOp::Uniform { to, index } => registers[to.index()] = Some(UNIFORMS[index as usize]),
-                TapeOp::Apply { op, data, to, args, wanted } => {
-                    let row = ops::operation(op);
-                    let args: Vec<f64> = args[..row.args.len()].iter().map(read).collect();
-                    let results = (row.meaning)(&args, Context { data, curves: &[] });
+                TapeOp::Apply { op, data, to, wanted, .. } => {
+                    let row = operation(op);
+                    let results = (row.meaning)(&operands, Context { data, curves: &[] });
                     for (i, _) in row.results.iter().enumerate() {
                         registers[to.index() + i] = (wanted >> i & 1 == 1).then_some(results[i]);
                     }
                 }
-                TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
+                TapeOp::ApplyScalar { op, scalar_first, scalar, to, .. } => {
                     let scalar = match scalar {
                         Scalar::Number(number) => f64::from(number),
                         Scalar::Uniform(index) => UNIFORMS[index as usize],
                     };
-                    let args = if scalar_first { [scalar, read(&arg)] } else { [read(&arg), scalar] };
-                    let result = (ops::operation(op).meaning)(&args, Context::default())[0];
+                    let args = if scalar_first { [scalar, operands[0]] } else { [operands[0], scalar] };
+                    let result = (operation(op).meaning)(&args, Context::default())[0];
                     registers[to.index()] = Some(result);
                 }
                 TapeOp::Loop { index, to } => {
                     let repeated = &tape.loops[index as usize];
-                    let mut state: Vec<f64> = repeated.args.iter().map(read).collect();
+                    let mut state = operands;
                     for _ in 0..repeated.most {
                         let next = by_tape(&repeated.body, &state, true);
                         if next[repeated.state()] == 0.0 {
@@ -298,6 +372,11 @@ mod tests {
                         registers[to.index() + i] = Some(state[i]);
                     }
                 }
+            }
+            if step.is_simple() {
+                let to = step.written(&tape.loops).start;
+                last = registers[to].expect("a step has a result");
+                registers[to] = registers[to].filter(|_| link.kept);
             }
         }
         let unchanged = |i: usize| registers[i].map(f64::to_bits) == Some(inputs[i].to_bits());
@@ -332,6 +411,27 @@ mod tests {
                 assert_eq!(found, expected, "{}\n{tape:?}", text::print_function(&function));
             }
         }
+    }
+
+    #[test]
+    fn chains_stay_out_of_registers() {
+        let body = "fn f(2) {\n%0 = input 0\n%1 = input 1\n%2 = constant 2.0\n%3 = sub %0 %2\n%4 = mul %3 %3\n\
+            %5 = sub %1 %4\n%6 = sin %5\n%7 = add %6 %4\nreturn %7\n}";
+        let tape = Tape::new(&text::parse_function(body).expect("well-formed text"));
+        let found: Vec<_> = tape.links.iter().map(|link| (link.carried, link.kept)).collect();
+        // Loads of both inputs come just before they are read; the sine is no simple step.
+        let expected = [
+            (Carried::Nothing, false),
+            (Carried::First, false),
+            (Carried::Both, true),
+            (Carried::Nothing, false),
+            (Carried::First, true),
+            (Carried::Nothing, true),
+            (Carried::Nothing, true),
+        ];
+        assert_eq!(found, expected, "{tape:?}");
+        let apart = links(&tape, |_| true);
+        assert!(apart.iter().all(|link| link.carried == Carried::Nothing && link.kept), "{apart:?}");
     }
 
     #[test]

@@ -35,7 +35,7 @@ use vol_compiler::ir::{FunctionId, Module};
 use vol_compiler::ops::MAX_RESULTS;
 use vol_compiler::program::Program;
 use vol_compiler::skip::Skip;
-use vol_compiler::tape::{Register, Tape, TapeLoop, TapeOp};
+use vol_compiler::tape::{Carried, Link, Register, Tape, TapeLoop, TapeOp};
 
 /// Points that go through a tape together.
 pub const LANES: usize = 128;
@@ -135,7 +135,7 @@ impl<'a> Evaluator<'a> {
                 self.evaluate_locally(local, function, inputs, outputs, points);
             } else {
                 self.registers.lay_out(tape.all_registers(), points.len());
-                self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
+                self.run(tape, tape.steps(), Registers::of(tape), inputs, &points);
                 self.hand_out(tape, outputs, &points);
             }
         }
@@ -163,13 +163,13 @@ impl<'a> Evaluator<'a> {
             }
             self.registers.lay_out(tape.all_registers(), groups.here.len());
             if groups.here.len() == points.len() {
-                self.run(tape, 0..tape.ops.len(), Registers::of(tape), inputs, &points);
+                self.run(tape, tape.steps(), Registers::of(tape), inputs, &points);
                 self.hand_out(tape, outputs, &points);
                 break;
             }
             let here = 0..groups.here.len();
             let slices = groups.gather(inputs);
-            self.run(tape, 0..tape.ops.len(), Registers::of(tape), &slices, &here);
+            self.run(tape, tape.steps(), Registers::of(tape), &slices, &here);
             for (output, register) in outputs.iter_mut().zip(&tape.outputs) {
                 let values = self.registers.row(register.index());
                 groups.here.iter().zip(values).for_each(|(&point, &value)| output[point] = value);
@@ -185,29 +185,28 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Walks through some steps of a tape whose registers start at `own.first`.
+    /// Walks through some steps of a tape, given with their links, whose registers start at `own.first`.
     fn run(
         &mut self,
         tape: &Tape,
-        steps: Range<usize>,
+        (mut steps, mut links): (&[TapeOp], &[Link]),
         own: Registers,
         inputs: &[&[f32]],
         points: &Range<usize>,
     ) {
         let at = |register: Register| own.first + register.index();
-        let mut rest = &tape.ops[steps];
         loop {
-            // As many operations of a few instructions as there are, then one that is a function of its own.
-            let steps = Steps { steps: rest, first: own.first, uniforms: self.uniforms, inputs, points };
+            // As many simple steps as there are, then one that is a function of its own.
+            let simple = Steps { steps, links, first: own.first, uniforms: self.uniforms, inputs, points };
             let (isa, bank) = (self.tapes.isa, &mut self.registers);
             let done = match bank.width() {
-                1 => isa.run_vectors::<Simple<1>>((bank.chunks(), steps)),
-                2 => isa.run_vectors::<Simple<2>>((bank.chunks(), steps)),
-                4 => isa.run_vectors::<Simple<4>>((bank.chunks(), steps)),
-                _ => isa.run_vectors::<Simple<8>>((bank.chunks(), steps)),
+                1 => isa.run_vectors::<Simple<1>>((bank.chunks(), simple)),
+                2 => isa.run_vectors::<Simple<2>>((bank.chunks(), simple)),
+                4 => isa.run_vectors::<Simple<4>>((bank.chunks(), simple)),
+                _ => isa.run_vectors::<Simple<8>>((bank.chunks(), simple)),
             };
-            let Some((step, after)) = rest[done..].split_first() else { return };
-            rest = after;
+            let Some((step, after)) = steps[done..].split_first() else { return };
+            (steps, links) = (after, &links[done + 1..]);
             match *step {
                 TapeOp::Apply { op, data, to, args, wanted } => {
                     // Those past the operation's own mean nothing, but are registers of the tape.
@@ -251,7 +250,7 @@ impl<'a> Evaluator<'a> {
             if let Some(sum) = &mut self.loop_work {
                 *sum += work * goes_on[..n].iter().filter(|&&goes_on| goes_on).count() as u64;
             }
-            self.run(body, 0..body.ops.len(), own, &[], &(0..n));
+            self.run(body, body.steps(), own, &[], &(0..n));
             let condition = self.registers.row(first + body.outputs[state].index());
             for (goes_on, &holds) in goes_on.iter_mut().zip(condition) {
                 *goes_on &= holds != 0.0;
@@ -295,6 +294,8 @@ fn batches(
 /// Steps of a tape, and what they read beside registers.
 struct Steps<'a> {
     steps: &'a [TapeOp],
+    /// One for each step.
+    links: &'a [Link],
     /// The first of the tape's registers.
     first: usize,
     uniforms: &'a [f32],
@@ -302,7 +303,7 @@ struct Steps<'a> {
     points: &'a Range<usize>,
 }
 
-/// Takes steps of a few instructions on rows of so many chunks; how many there were.
+/// Takes simple steps on rows of so many chunks; how many there were.
 struct Simple<const WIDTH: usize>;
 
 impl<const WIDTH: usize> VectorKernel for Simple<WIDTH> {
@@ -311,28 +312,69 @@ impl<const WIDTH: usize> VectorKernel for Simple<WIDTH> {
 
     #[inline(always)]
     fn run<S: Simd>(simd: S, (chunks, all): Self::Args<'_>) -> usize {
-        let rows = Rows::<S, WIDTH>::new(simd, chunks);
-        let at = |register: Register| all.first + register.index();
-        for (done, step) in all.steps.iter().enumerate() {
-            match *step {
-                TapeOp::Constant { to, value } => rows.fill(at(to), value),
-                TapeOp::Uniform { to, index } => rows.fill(at(to), all.uniforms[index as usize]),
-                TapeOp::Input { to, index } => {
-                    rows.load(at(to), &all.inputs[index as usize][all.points.clone()]);
+        let vectors = WIDTH * bank::CHUNK / S::F32_LANES;
+        match vectors {
+            1 => walk::<S, 1>(simd, chunks, &all, 0, 1),
+            2 => walk::<S, 2>(simd, chunks, &all, 0, 1),
+            4 => walk::<S, 4>(simd, chunks, &all, 0, 1),
+            // More than the machine has registers for go one part after the other.
+            _ => {
+                let (parts, mut done) = (vectors / 8, 0);
+                for part in 0..parts {
+                    done = walk::<S, 8>(simd, chunks, &all, part, parts);
                 }
-                TapeOp::Apply { op, to, args, .. } => {
-                    if !rows.apply(op, at(to), args.map(at)) {
-                        return done;
-                    }
-                }
-                TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
-                    rows.apply_scalar(op, at(to), at(arg), scalar.value(all.uniforms), scalar_first);
-                }
-                TapeOp::Loop { .. } => return done,
+                done
             }
         }
-        all.steps.len()
     }
+}
+
+/// The same on one of so many parts of the rows. The result of the last step stays in the registers of the machine.
+#[inline(always)]
+fn walk<S: Simd, const VECTORS: usize>(
+    simd: S,
+    chunks: &mut [Chunk],
+    all: &Steps<'_>,
+    part: usize,
+    parts: usize,
+) -> usize {
+    let rows = Rows::<S, VECTORS>::new(simd, chunks, part, parts);
+    let at = |register: Register| all.first + register.index();
+    let mut last = rows.same(0.0);
+    for (done, (step, link)) in all.steps.iter().zip(all.links).enumerate() {
+        let to = match *step {
+            TapeOp::Constant { to, value } => {
+                last = rows.same(value);
+                to
+            }
+            TapeOp::Uniform { to, index } => {
+                last = rows.same(all.uniforms[index as usize]);
+                to
+            }
+            TapeOp::Input { to, index } => {
+                rows.load_values(&mut last, &all.inputs[index as usize][all.points.clone()]);
+                to
+            }
+            TapeOp::Apply { op, to, args, .. } => {
+                if !rows.apply(&mut last, op, link.carried, args.map(at)) {
+                    return done;
+                }
+                to
+            }
+            TapeOp::ApplyScalar { op, scalar_first, scalar, to, arg } => {
+                if link.carried == Carried::Nothing {
+                    rows.load(&mut last, at(arg));
+                }
+                rows.apply_scalar(&mut last, op, scalar.value(all.uniforms), scalar_first);
+                to
+            }
+            TapeOp::Loop { .. } => return done,
+        };
+        if link.kept {
+            rows.store(at(to), &last);
+        }
+    }
+    all.steps.len()
 }
 
 /// Points of a batch by the cell that they are in.

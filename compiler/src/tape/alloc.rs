@@ -123,7 +123,9 @@ impl<'a> Scan<'a> {
         }
         let outputs = self.function.outputs.iter().map(|&v| self.read(v)).collect();
         let (inputs, registers) = (self.function.inputs, self.free.len() as u32);
-        Tape { inputs, outputs, registers, ops: self.ops, values: self.values, loops: self.loops }
+        let links = Vec::new();
+        Tape { inputs, outputs, registers, ops: self.ops, values: self.values, loops: self.loops, links }
+            .linked()
     }
 
     fn step(&mut self, i: usize, inst: &Inst) {

@@ -28,7 +28,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use vol_compiler::frame::{Aabb, Frame};
 use vol_compiler::ir::{FunctionId, Module};
 use vol_compiler::ops::Op;
-use vol_compiler::tape::{Tape, TapeOp};
+use vol_compiler::tape::{Link, Tape, TapeOp};
 use vol_compiler::wgsl::render::padded;
 
 /// Most bytes of the cells of all functions of a frame.
@@ -37,16 +37,19 @@ const MOST_BYTES: usize = 576 << 20;
 /// As many for each instruction of those functions, if that is less.
 const BYTES_PER_INSTRUCTION: usize = 32 << 10;
 
+/// Bytes of a step of a tape.
+const STEP: usize = size_of::<TapeOp>() + size_of::<Link>();
+
 /// Most bytes that all this takes, with `threads` that divide cells.
 pub(crate) fn most_bytes(module: &Module, frame: &Frame, threads: usize) -> usize {
     let candidates = candidates(module, frame);
     let lengths = || candidates.iter().map(|&(_, id)| length(module, id));
     let (all, longest) = (lengths().sum::<usize>(), lengths().max().unwrap_or(0));
     // Results are at most eight an instruction, and nearly always one.
-    let step = size_of::<TapeOp>() + 16 + 2 * size_of::<Choice>();
+    let step = STEP + 16 + 2 * size_of::<Choice>();
     let register = size_of::<Eight>() + 16;
     // A tape that is made for one batch, and its registers.
-    let batch = size_of::<TapeOp>() + LANES * size_of::<f32>();
+    let batch = STEP + LANES * size_of::<f32>();
     for_cells(all) + all * (step + 2 * threads * register) + longest * threads * batch
 }
 
@@ -324,7 +327,7 @@ impl<'a> Found<'a> {
             return None;
         }
         let make = || root.with_room(|room| cell.outline.tape(&root.tape, &mut room.room));
-        let bytes = cell.outline.steps * size_of::<TapeOp>();
+        let bytes = cell.outline.steps * STEP;
         let kept = cell.outline.tape.get_or_init(|| pay(&local.left_for_tapes, bytes).then(make)).as_ref();
         Some(kept.map_or_else(|| Cow::Owned(make()), Cow::Borrowed))
     }

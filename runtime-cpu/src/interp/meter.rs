@@ -11,11 +11,12 @@
 
 use super::work::Known;
 use super::{Evaluator, Registers, Tapes, batches};
+use std::collections::HashSet;
 use std::hint::black_box;
 use std::ops::Range;
 use std::time::{Duration, Instant};
 use vol_compiler::ir::FunctionId;
-use vol_compiler::tape::{Tape, TapeOp};
+use vol_compiler::tape::{Link, Tape, TapeOp, links};
 
 /// One batch of so many is timed stretch by stretch; odd, so that it does not fall into step with calls of 2^n batches.
 const PERIOD: u64 = 13;
@@ -33,10 +34,18 @@ struct Stretch {
     work: u64,
 }
 
+/// A tape cut into stretches.
+#[derive(Clone, Debug)]
+struct Cut {
+    stretches: Vec<Stretch>,
+    /// Of the steps of the tape; a stretch has nothing from the one before.
+    links: Vec<Link>,
+}
+
 /// The tapes of a program cut into stretches.
 #[derive(Clone, Debug)]
 pub(crate) struct Stretches {
-    functions: Vec<Vec<Stretch>>,
+    functions: Vec<Cut>,
     /// Nanoseconds from one reading of the clock to the next with nothing between.
     reading: f64,
 }
@@ -51,7 +60,7 @@ impl Stretches {
 }
 
 /// Cuts a tape up. What is loaded belongs to the operation that follows.
-fn cut(tape: &Tape, known: Known<'_>, labels: &[u32]) -> Vec<Stretch> {
+fn cut(tape: &Tape, known: Known<'_>, labels: &[u32]) -> Cut {
     let mut stretches: Vec<Stretch> = Vec::new();
     for (step, (op, value)) in tape.ops.iter().zip(&tape.values).enumerate() {
         let loads = matches!(op, TapeOp::Constant { .. } | TapeOp::Input { .. } | TapeOp::Uniform { .. });
@@ -70,7 +79,8 @@ fn cut(tape: &Tape, known: Known<'_>, labels: &[u32]) -> Vec<Stretch> {
             Some(_) | None => {}
         }
     }
-    stretches
+    let starts: HashSet<usize> = stretches.iter().map(|stretch| stretch.steps.start).collect();
+    Cut { links: links(tape, |step| starts.contains(&step)), stretches }
 }
 
 fn time_of_reading() -> f64 {
@@ -141,8 +151,8 @@ pub struct PartCost {
 impl<'a> Meter<'a> {
     /// Nothing spent yet. Meters with different `phase` look at different batches.
     pub(crate) fn new(stretches: &'a Stretches, phase: u64) -> Self {
-        let account = |stretches: &Vec<Stretch>| Account {
-            stretches: vec![Spent::default(); stretches.len()],
+        let account = |cut: &Cut| Account {
+            stretches: vec![Spent::default(); cut.stretches.len()],
             ..Account::default()
         };
         let accounts = stretches.functions.iter().map(account).collect();
@@ -169,7 +179,11 @@ impl<'a> Meter<'a> {
 
     /// What each function cost.
     pub(crate) fn costs(&self) -> Vec<FunctionCost> {
-        self.accounts.iter().zip(&self.stretches.functions).map(|(account, cut)| cost(account, cut)).collect()
+        self.accounts
+            .iter()
+            .zip(&self.stretches.functions)
+            .map(|(account, cut)| cost(account, &cut.stretches))
+            .collect()
     }
 }
 
@@ -230,9 +244,10 @@ impl Evaluator<'_> {
             let mut last = meter.batches.is_multiple_of(PERIOD).then(Instant::now);
             readings += u64::from(last.is_some());
             self.registers.lay_out(tape.all_registers(), points.len());
-            for (stretch, spent) in cut.iter().zip(&mut account.stretches) {
+            for (stretch, spent) in cut.stretches.iter().zip(&mut account.stretches) {
                 self.loop_work = Some(0);
-                self.run(tape, stretch.steps.clone(), Registers::of(tape), inputs, &points);
+                let steps = (&tape.ops[stretch.steps.clone()], &cut.links[stretch.steps.clone()]);
+                self.run(tape, steps, Registers::of(tape), inputs, &points);
                 spent.loop_work += self.loop_work.take().unwrap_or(0);
                 if let Some(last) = &mut last {
                     let now = Instant::now();
@@ -272,9 +287,10 @@ return %3 %2
 }
 %10 = extract %9 0
 %11 = add %10 %8
-return %11
+%12 = neg %11
+return %12
 }";
-    const LABELS: [u32; 12] = [0, 0, 0, 1, 1, 0, 0, 2, 1, 3, 3, 0];
+    const LABELS: [u32; 13] = [0, 0, 0, 1, 1, 0, 0, 2, 1, 3, 3, 0, 1];
 
     /// Costs of some calls of the function, and its values.
     fn metered(x: &[f32], call: usize) -> (Vec<FunctionCost>, Vec<f32>) {
@@ -318,7 +334,7 @@ return %11
         assert_eq!([part(1), part(2), part(3), part(0)].map(|part| part.evaluations), [1000; 4]);
         assert_eq!(
             [part(1), part(2), part(3), part(0)].map(|part| part.operations),
-            [3000, 1000 * sum, looped, 1000]
+            [4000, 1000 * sum, looped, 1000]
         );
         // Neither the size of a batch nor of a call changes a count.
         let counts = |costs: &[FunctionCost]| {

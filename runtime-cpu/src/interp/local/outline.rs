@@ -24,7 +24,7 @@ const LONG: usize = 8 << 10;
 pub(super) fn spine(tape: &Tape) -> Vec<bool> {
     let mut writer = vec![0; tape.registers as usize];
     for (index, step) in tape.ops.iter().enumerate() {
-        writer[written(tape, step)].fill(index);
+        writer[step.written(&tape.loops)].fill(index);
     }
     let (mut spine, mut seen) = (vec![false; tape.ops.len()], vec![false; tape.ops.len()]);
     // Steps to look at, and whether there was a choice on the way.
@@ -44,7 +44,7 @@ pub(super) fn spine(tape: &Tape) -> Vec<bool> {
         spine[index] = chooses;
         if chooses || !below {
             left.extend(
-                operands(tape, step).iter().map(|operand| (writer[operand.index()], below || chooses)),
+                step.operands(&tape.loops).iter().map(|operand| (writer[operand.index()], below || chooses)),
             );
         }
     }
@@ -113,6 +113,7 @@ impl Outline {
             // Nobody asks where the steps come from.
             values: Vec::new(),
             loops: Vec::new(),
+            links: Vec::new(),
         };
         for part in &self.parts {
             match part {
@@ -128,7 +129,7 @@ impl Outline {
                 }
                 Part::Steps(steps) => {
                     for step in &whole.ops[steps.start as usize..steps.end as usize] {
-                        let (old, new) = (written(whole, step), Register(short.registers));
+                        let (old, new) = (step.written(&whole.loops), Register(short.registers));
                         let step = renamed(step, new, names, &whole.loops, &mut short.loops);
                         short.ops.push(step);
                         short.registers += old.len() as u32;
@@ -138,7 +139,7 @@ impl Outline {
             }
         }
         short.outputs = self.outputs.iter().map(|output| names[output.index()]).collect();
-        short
+        short.linked()
     }
 }
 
@@ -219,7 +220,7 @@ impl<'a> Outlines<'a> {
 
     fn keep_step(&mut self, index: u32, choice: Option<&Choice>, room: &mut Room) {
         let step = &self.tape.ops[index as usize];
-        let read = room.read[written(self.tape, step)].iter().fold(0, |all, read| all | read);
+        let read = room.read[step.written(&self.tape.loops)].iter().fold(0, |all, read| all | read);
         if read == 0 {
             return;
         }
@@ -232,7 +233,7 @@ impl<'a> Outlines<'a> {
             }
         }
         if computed != 0 {
-            for operand in operands(self.tape, step) {
+            for operand in step.operands(&self.tape.loops) {
                 room.read[operand.index()] |= computed;
                 room.read_by_step[operand.index()] |= computed;
             }
@@ -261,7 +262,7 @@ impl<'a> Outlines<'a> {
                     (to.index()..to.index() + 1, None)
                 }
                 Kept::Step { index, computed, sides } => {
-                    let to = written(self.tape, &self.tape.ops[*index as usize]);
+                    let to = self.tape.ops[*index as usize].written(&self.tape.loops);
                     let taken = sides.iter().flatten().find(|(_, boxes)| is_here(*boxes));
                     let other = match taken {
                         Some((Side::Register(operand), _)) => Some(*operand),
@@ -302,8 +303,8 @@ impl<'a> Outlines<'a> {
             match part {
                 Part::Steps(steps) => {
                     for step in &self.tape.ops[steps.start as usize..steps.end as usize] {
-                        room.read[written(self.tape, step)].fill(0);
-                        room.read_by_step[written(self.tape, step)].fill(0);
+                        room.read[step.written(&self.tape.loops)].fill(0);
+                        room.read_by_step[step.written(&self.tape.loops)].fill(0);
                     }
                 }
                 Part::Same { to, .. } | Part::Scalar { to, .. } => {
@@ -339,28 +340,5 @@ fn renamed(
             new_loops.push(TapeLoop { most: *most, args, body: Arc::clone(body) });
             TapeOp::Loop { index: new_loops.len() as u32 - 1, to }
         }
-    }
-}
-
-/// The registers that a step writes.
-fn written(tape: &Tape, step: &TapeOp) -> Range<usize> {
-    let (to, results) = match *step {
-        TapeOp::Constant { to, .. }
-        | TapeOp::Input { to, .. }
-        | TapeOp::Uniform { to, .. }
-        | TapeOp::ApplyScalar { to, .. } => (to, 1),
-        TapeOp::Apply { op, to, .. } => (to, operation(op).results.len()),
-        TapeOp::Loop { index, to } => (to, tape.loops[index as usize].state()),
-    };
-    to.index()..to.index() + results
-}
-
-/// The registers that a step reads.
-fn operands<'a>(tape: &'a Tape, step: &'a TapeOp) -> &'a [Register] {
-    match step {
-        TapeOp::Constant { .. } | TapeOp::Input { .. } | TapeOp::Uniform { .. } => &[],
-        TapeOp::Apply { op, args, .. } => &args[..operation(*op).args.len()],
-        TapeOp::ApplyScalar { arg, .. } => std::slice::from_ref(arg),
-        TapeOp::Loop { index, .. } => &tape.loops[*index as usize].args,
     }
 }

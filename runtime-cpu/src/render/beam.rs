@@ -11,7 +11,7 @@
 
 use super::camera::{FAR, Ray, Span, slab};
 use super::fields::Fields;
-use super::near::{Met, Walker, started};
+use super::near::{Met, Walkers};
 use super::scene::{Integrator, Stride};
 use super::surface::MAX_STEPS;
 use crate::real::{Real, Vec3};
@@ -27,23 +27,19 @@ impl<F: Fields> Integrator<'_, F> {
         length: F::Real,
     ) -> Vec<F::Real> {
         let length = length.min(F::Real::from_f32(FAR));
-        let (mut met, ends) = self.met_by_beams(axes, radius, length);
+        let (met, ends) = self.met_by_beams(axes, radius, length);
         let mut clear = starts.to_vec();
-        let mut walkers = started(starts);
+        let mut walkers = Walkers::started(axes, met, starts);
         for _ in 0..MAX_STEPS {
-            let near = self.nearest(axes, &mut met, &walkers);
-            let mut left = Vec::with_capacity(walkers.len());
-            for (walker, near) in walkers.into_iter().zip(near) {
+            self.nearest(&mut walkers);
+            walkers.go(|walker, near| {
                 let distance = near.distance.max(F::Real::ZERO);
                 let free = (distance * distance - radius * radius).max(F::Real::ZERO).sqrt();
                 let t = (walker.t + free.min(near.gap)).min(ends[walker.ray]);
                 clear[walker.ray] = t.max(walker.t);
-                if free >= radius && t < ends[walker.ray] {
-                    left.push(Walker { ray: walker.ray, t, from: walker.t });
-                }
-            }
-            walkers = left;
-            if walkers.is_empty() {
+                (free >= radius && t < ends[walker.ray]).then_some(t)
+            });
+            if walkers.are_done() {
                 break;
             }
         }

@@ -25,6 +25,19 @@ pub(crate) trait Fields {
         self.apply(function, &[&points.x, &points.y, &points.z])
     }
 
+    /// The first output at many points, in place of what `values` holds.
+    fn sample_one(
+        &mut self,
+        function: FunctionId,
+        points: &Points<Self::Real>,
+        values: &mut Vec<Self::Real>,
+    ) {
+        values.resize(points.len(), Self::Real::ZERO);
+        if points.len() > 0 {
+            self.evaluate(function, &[&points.x, &points.y, &points.z], &mut [values]);
+        }
+    }
+
     /// The outputs for many arguments.
     fn apply<const N: usize>(
         &mut self,
@@ -59,6 +72,16 @@ impl<R: Real> Points<R> {
         self.x.push(point[0]);
         self.y.push(point[1]);
         self.z.push(point[2]);
+    }
+
+    /// Takes others in their place, as many as the iterator is long.
+    pub(crate) fn set(&mut self, points: impl ExactSizeIterator<Item = Vec3<R>>) {
+        [&mut self.x, &mut self.y, &mut self.z]
+            .into_iter()
+            .for_each(|column| column.resize(points.len(), R::ZERO));
+        for (((x, y), z), point) in self.x.iter_mut().zip(&mut self.y).zip(&mut self.z).zip(points) {
+            [*x, *y, *z] = point;
+        }
     }
 
     /// Adds those at distances along a ray.

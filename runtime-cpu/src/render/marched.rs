@@ -14,7 +14,7 @@
 
 use super::camera::{FAR, Ray, Span, slab};
 use super::fields::Fields;
-use super::near::{Met, Walker};
+use super::near::{Met, Walkers};
 use super::scene::{Integrator, Stride};
 use super::styled::Cell;
 use super::surface::{MAX_STEPS, stride};
@@ -170,17 +170,15 @@ impl<F: Fields> Integrator<'_, F> {
         if self.scene.solids.is_empty() {
             return margins;
         }
-        let mut met = self.met_nearby(rays, reach);
+        let mut walkers = Walkers::new(rays, self.met_nearby(rays, reach));
         let mut deep = vec![0; rays.len()];
-        let mut walkers: Vec<_> =
-            (0..rays.len()).map(|ray| Walker { ray, t: F::Real::ZERO, from: F::Real::ZERO }).collect();
+        let scene = self.scene;
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &mut met, &walkers);
-            let mut left = Vec::with_capacity(walkers.len());
-            for (walker, near) in walkers.into_iter().zip(near) {
+            self.nearest(&mut walkers);
+            walkers.go(|walker, near| {
                 let ray = walker.ray;
                 let nowhere = near.distance >= F::Real::from_f32(FAR);
-                let bounded = nowhere || !matches!(self.scene.solids[near.solid].stride, Stride::Within(_));
+                let bounded = nowhere || !matches!(scene.solids[near.solid].stride, Stride::Within(_));
                 let sure = if bounded { near.distance } else { F::Real::ZERO };
                 let inside = near.distance < F::Real::ZERO;
                 let mut t = walker.t + near.advance(step, least[ray]);
@@ -192,19 +190,16 @@ impl<F: Fields> Integrator<'_, F> {
                     deep[ray] += 1;
                     if !inside || deep[ray] > DEPTHS {
                         margins[ray] = margins[ray].min(-F::Real::from_f32(f32::MIN_POSITIVE));
-                        continue;
+                        return None;
                     }
                     t = walker.t + depth.max(least[ray]);
                 } else {
                     let half = F::Real::from_f32(0.5) * sure;
                     margins[ray] = margins[ray].min(half.max(F::Real::from_f32(f32::MIN_POSITIVE)));
                 }
-                if t < F::Real::from_f32(FAR) {
-                    left.push(Walker { ray, t, from: walker.t });
-                }
-            }
-            walkers = left;
-            if walkers.is_empty() {
+                (t < F::Real::from_f32(FAR)).then_some(t)
+            });
+            if walkers.are_done() {
                 break;
             }
         }

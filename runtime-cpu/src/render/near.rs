@@ -7,18 +7,19 @@
 
 use super::box_tree::Answer;
 use super::camera::{FAR, Ray, Span};
-use super::fields::Fields;
+use super::fields::{Fields, Points};
 use super::scene::Integrator;
 use super::stride::Ahead;
 use super::surface::MAX_STEPS;
 use crate::real::Real;
+use std::ops::Range;
 
 /// A ray on its way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Walker<R> {
     /// Index of the ray.
     pub(crate) ray: usize,
-    /// Distance walked.
+    /// Distance walked; infinite once it goes no further.
     pub(crate) t: R,
     /// Where it was one step earlier.
     pub(crate) from: R,
@@ -118,7 +119,7 @@ pub(crate) struct Met<R> {
     pub(crate) solid: usize,
     /// Sign of its distance for these rays.
     pub(crate) side: R,
-    /// The rays that meet its box, in order, each with its part in it.
+    /// Rays with their parts in its box.
     pub(crate) parts: Vec<(usize, Span<R>)>,
 }
 
@@ -132,87 +133,171 @@ impl<R: Real> Met<R> {
         };
         answers.chunk_by(|a, b| a.index == b.index).map(met).collect()
     }
+}
 
-    /// Keeps the parts that a walker is in or comes to; notes which walkers are in this solid's box, and how far the
-    /// others are from it.
-    fn keep_ahead(&mut self, walkers: &[Walker<R>], all: &mut [Near<R>], here: &mut Vec<usize>) {
-        let mut which = 0;
-        self.parts.retain(|&(ray, span)| {
-            while walkers.get(which).is_some_and(|walker| walker.ray < ray) {
-                which += 1;
+/// A box that a ray comes to.
+#[derive(Clone, Copy, Debug)]
+struct Coming<R> {
+    span: Span<R>,
+    /// Which of the solids that are met.
+    met: usize,
+}
+
+/// The rays of a batch that walk together. A step costs as much as there are rays that still walk and boxes that they
+/// are in, however many lie ahead or behind.
+#[derive(Debug)]
+pub(crate) struct Walkers<'a, R> {
+    rays: &'a [Ray<R>],
+    /// By ray.
+    all: Vec<Walker<R>>,
+    /// What each has around it, by ray.
+    near: Vec<Near<R>>,
+    /// Rays that still walk, in order.
+    going: Vec<usize>,
+    /// All solids that are met, in order, with the parts of the rays that are in their boxes.
+    met: Vec<Met<R>>,
+    /// Those of which some ray is in the box, in order.
+    entered: Vec<usize>,
+    /// The boxes that rays come to, by ray, then by where they begin.
+    coming: Vec<Coming<R>>,
+    /// Which of these are ahead, by ray.
+    ahead: Vec<Range<usize>>,
+    /// Room for the questions to a solid.
+    points: Points<R>,
+    values: Vec<R>,
+    safe: Vec<R>,
+}
+
+impl<'a, R: Real> Walkers<'a, R> {
+    /// All rays at their origins.
+    pub(crate) fn new(rays: &'a [Ray<R>], met: Vec<Met<R>>) -> Self {
+        Self::started(rays, met, &vec![R::ZERO; rays.len()])
+    }
+
+    /// All rays at some distances from their origins.
+    pub(crate) fn started(rays: &'a [Ray<R>], mut met: Vec<Met<R>>, distances: &[R]) -> Self {
+        let far = R::from_f32(FAR);
+        let nothing = Near { distance: far, value: far, solid: 0, gap: far, rest: R::ZERO };
+        let (coming, ahead) = in_order(rays.len(), &mut met);
+        Self {
+            rays,
+            all: distances.iter().enumerate().map(|(ray, &t)| Walker { ray, t, from: t }).collect(),
+            near: vec![nothing; rays.len()],
+            going: (0..rays.len()).collect(),
+            met,
+            entered: Vec::new(),
+            coming,
+            ahead,
+            points: Points::new(),
+            values: Vec::new(),
+            safe: Vec::new(),
+        }
+    }
+
+    /// Whether all have stopped.
+    pub(crate) fn are_done(&self) -> bool {
+        self.going.is_empty()
+    }
+
+    /// Lets each walker go on to a distance, in the order of the rays; it stops where `step` gives none.
+    pub(crate) fn go(&mut self, mut step: impl FnMut(Walker<R>, &Near<R>) -> Option<R>) {
+        let (all, near) = (&mut self.all, &self.near);
+        self.going.retain(|&ray| {
+            let from = all[ray].t;
+            let to = step(all[ray], &near[ray]);
+            all[ray] = Walker { ray, t: to.unwrap_or(R::from_f32(f32::INFINITY)), from };
+            to.is_some()
+        });
+    }
+
+    /// Enters the boxes that walkers have come to and leaves those that they are past; notes how far the next box is, and
+    /// the last end of those around.
+    fn arrive(&mut self) {
+        let far = R::from_f32(FAR);
+        for &ray in &self.going {
+            let (t, ahead) = (self.all[ray].t, &mut self.ahead[ray]);
+            let mut gap = far;
+            while let Some(&Coming { span, met }) = self.coming[ahead.clone()].first() {
+                if t < span.entry {
+                    gap = gap.min(span.entry - t);
+                    break;
+                }
+                ahead.start += 1;
+                self.met[met].parts.push((ray, span));
+                if let Err(place) = self.entered.binary_search(&met) {
+                    self.entered.insert(place, met);
+                }
             }
-            let Some(t) = walkers.get(which).filter(|walker| walker.ray == ray).map(|walker| walker.t) else {
-                return false;
-            };
-            let near = &mut all[which];
-            if t < span.entry {
-                near.gap = near.gap.min(span.entry - t);
-            } else if t <= span.exit {
+            self.near[ray] = Near { distance: far, value: far, solid: 0, gap, rest: R::ZERO };
+        }
+        let (all, near, met) = (&self.all, &mut self.near, &mut self.met);
+        self.entered.retain(|&entered| {
+            let parts = &mut met[entered].parts;
+            parts.retain(|&(ray, span)| {
+                let (t, near) = (all[ray].t, &mut near[ray]);
                 near.rest = near.rest.max(span.exit - t);
-                here.push(which);
-            }
-            t <= span.exit
+                t <= span.exit
+            });
+            !parts.is_empty()
         });
     }
 }
 
+/// Takes the parts of rays out of what is met: the boxes that each ray comes to, by where they begin.
+fn in_order<R: Real>(rays: usize, met: &mut [Met<R>]) -> (Vec<Coming<R>>, Vec<Range<usize>>) {
+    let mut ahead = vec![0..0; rays];
+    met.iter().flat_map(|met| &met.parts).for_each(|&(ray, _)| ahead[ray].end += 1);
+    let mut count = 0;
+    for own in &mut ahead {
+        let start = count;
+        count += own.end;
+        *own = start..start;
+    }
+    let nothing = Coming { span: Span { entry: R::ZERO, exit: R::ZERO }, met: 0 };
+    let mut coming = vec![nothing; count];
+    for (index, met) in met.iter_mut().enumerate() {
+        for (ray, span) in met.parts.drain(..) {
+            coming[ahead[ray].end] = Coming { span, met: index };
+            ahead[ray].end += 1;
+        }
+    }
+    for own in &ahead {
+        coming[own.clone()].sort_unstable_by(|a, b| a.span.entry.to_f64().total_cmp(&b.span.entry.to_f64()));
+    }
+    (coming, ahead)
+}
+
 impl<F: Fields> Integrator<'_, F> {
-    /// Looks around from every walker; they are in the order of their rays. Parts of rays that no walker is before or in
-    /// any more are forgotten, so that a few that walk on cost what a few cost.
-    pub(crate) fn nearest(
-        &mut self,
-        rays: &[Ray<F::Real>],
-        all_met: &mut Vec<Met<F::Real>>,
-        walkers: &[Walker<F::Real>],
-    ) -> Vec<Near<F::Real>> {
-        let far = F::Real::from_f32(FAR);
-        let mut all =
-            vec![Near { distance: far, value: far, solid: 0, gap: far, rest: F::Real::ZERO }; walkers.len()];
+    /// Looks around from every walker.
+    pub(crate) fn nearest(&mut self, walkers: &mut Walkers<'_, F::Real>) {
+        walkers.arrive();
+        let Walkers { rays, all, near, met, entered, points, values, safe, .. } = walkers;
         let scene = self.scene;
         let mut joined = Joined::default();
-        let mut here = Vec::with_capacity(walkers.len());
-        for met in &mut *all_met {
+        for met in entered.iter().map(|&entered| &met[entered]) {
             let solid = &scene.solids[met.solid];
-            here.clear();
-            met.keep_ahead(walkers, &mut all, &mut here);
-            if here.is_empty() {
-                continue;
-            }
-            let places = here.iter().map(|&which| &walkers[which]);
-            let points = places.map(|walker| rays[walker.ray].at(walker.t)).collect();
-            let [mut values] = self.fields.sample(solid.distance, &points);
-            self.stats.surface_evaluations += here.len() as u64;
+            points.set(met.parts.iter().map(|&(ray, _)| rays[ray].at(all[ray].t)));
+            self.fields.sample_one(solid.distance, points, values);
+            self.stats.surface_evaluations += values.len() as u64;
             values.iter_mut().for_each(|value| *value = met.side * *value);
             let ahead = |index: usize| {
-                let walker: &Walker<F::Real> = &walkers[here[index]];
-                Ahead { ray: rays[walker.ray], t: walker.t, last: walker.t - walker.from }
+                let Walker { ray, t, from } = all[met.parts[index].0];
+                Ahead { ray: rays[ray], t, last: t - from }
             };
-            let mut safe = values.clone();
-            self.shorten(solid, ahead, &mut safe);
+            safe.clone_from(values);
+            self.shorten(solid, ahead, safe);
             let is_within = met.side < F::Real::ZERO;
             if is_within {
-                joined.begin(solid.whole, &all);
+                joined.begin(solid.whole, near);
             }
-            for ((&which, value), safe) in here.iter().zip(values).zip(safe) {
+            for ((&(ray, _), &value), &safe) in met.parts.iter().zip(&*values).zip(&*safe) {
                 let wall = Wall { solid: met.solid, value, safe };
                 if is_within {
-                    joined.add(&mut all[which], which, &wall);
+                    joined.add(&mut near[ray], ray, &wall);
                 } else {
-                    all[which].add(&wall);
+                    near[ray].add(&wall);
                 }
             }
         }
-        all_met.retain(|met| !met.parts.is_empty());
-        all
     }
-}
-
-/// All rays at their origins.
-pub(crate) fn start<R: Real>(rays: usize) -> Vec<Walker<R>> {
-    (0..rays).map(|ray| Walker { ray, t: R::ZERO, from: R::ZERO }).collect()
-}
-
-/// All rays at some distances from their origins.
-pub(super) fn started<R: Real>(distances: &[R]) -> Vec<Walker<R>> {
-    distances.iter().enumerate().map(|(ray, &t)| Walker { ray, t, from: t }).collect()
 }

@@ -7,7 +7,7 @@
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};
 use super::fields::{Fields, colors};
-use super::near::{Walker, start, started};
+use super::near::Walkers;
 use super::panel::Panels;
 use super::penumbra::Cone;
 use super::scene::{Integrator, Light};
@@ -120,25 +120,20 @@ impl<F: Fields> Integrator<'_, F> {
             return blocked;
         }
         let paths: Vec<_> = rays.iter().map(|ray| ray.ray).collect();
-        let mut met = self.met_from_outside(&paths);
-        let mut walkers: Vec<_> = start(rays.len());
+        let mut walkers = Walkers::new(&paths, self.met_from_outside(&paths));
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(&paths, &mut met, &walkers);
-            let mut left = Vec::with_capacity(walkers.len());
-            for (walker, near) in walkers.into_iter().zip(near) {
+            self.nearest(&mut walkers);
+            walkers.go(|walker, near| {
                 // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
                 let ray = &rays[walker.ray];
                 if ray.enters(near.distance, walker.t) {
                     blocked[walker.ray] = true;
-                    continue;
+                    return None;
                 }
                 let t = walker.t + near.advance(step, ray.stride);
-                if t < ray.length.min(F::Real::from_f32(FAR)) {
-                    left.push(Walker { ray: walker.ray, t, from: walker.t });
-                }
-            }
-            walkers = left;
-            if walkers.is_empty() {
+                (t < ray.length.min(F::Real::from_f32(FAR))).then_some(t)
+            });
+            if walkers.are_done() {
                 break;
             }
         }
@@ -155,23 +150,18 @@ impl<F: Fields> Integrator<'_, F> {
         least: F::Real,
     ) -> Vec<Option<F::Real>> {
         let mut entries = vec![None; rays.len()];
-        let mut met = self.met_from_outside(rays);
-        let mut walkers = started(starts);
+        let mut walkers = Walkers::started(rays, self.met_from_outside(rays), starts);
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &mut met, &walkers);
-            let mut left = Vec::with_capacity(walkers.len());
-            for (walker, near) in walkers.into_iter().zip(near) {
+            self.nearest(&mut walkers);
+            walkers.go(|walker, near| {
                 if near.distance < F::Real::ZERO {
                     entries[walker.ray] = Some(walker.t);
-                    continue;
+                    return None;
                 }
                 let t = walker.t + near.advance(step, least);
-                if t < length {
-                    left.push(Walker { ray: walker.ray, t, from: walker.t });
-                }
-            }
-            walkers = left;
-            if walkers.is_empty() {
+                (t < length).then_some(t)
+            });
+            if walkers.are_done() {
                 break;
             }
         }

@@ -14,7 +14,7 @@
 use super::box_tree::Answer;
 use super::camera::{FAR, Ray, contains};
 use super::fields::{Fields, Points};
-use super::near::{Met, Walker, start};
+use super::near::{Met, Walker, Walkers};
 use super::scene::{Batches, Integrator, Scene};
 use crate::real::{Real, Vec3, dot, length, scale};
 use std::collections::{BTreeMap, BTreeSet};
@@ -121,28 +121,23 @@ impl<'a, F: Fields> Integrator<'a, F> {
         if self.scene.solids.is_empty() {
             return Vec::new();
         }
-        let mut met = self.met_from_the_eye(rays);
-        let mut walkers: Vec<_> = start(rays.len());
+        let mut walkers = Walkers::new(rays, self.met_from_the_eye(rays));
         let mut hits = Vec::new();
+        let scene = self.scene;
         for step in 1..=MAX_STEPS {
-            let near = self.nearest(rays, &mut met, &walkers);
-            let mut left = Vec::with_capacity(walkers.len());
-            for (walker, near) in walkers.into_iter().zip(near) {
+            self.nearest(&mut walkers);
+            walkers.go(|walker, near| {
                 // Stop inside a solid; on the last step also where it would have been near enough.
-                let patience =
-                    if step == MAX_STEPS { tolerance(self.scene, walker.t) } else { F::Real::ZERO };
+                let patience = if step == MAX_STEPS { tolerance(scene, walker.t) } else { F::Real::ZERO };
                 if near.value < patience {
                     hits.push((walker, near.solid));
-                    continue;
+                    return None;
                 }
                 // Walk as far as nothing can be, at least a fortieth of a pixel.
-                let t = walker.t + near.advance(step, stride(self.scene, walker.t));
-                if t < F::Real::from_f32(FAR) {
-                    left.push(Walker { ray: walker.ray, t, from: walker.t });
-                }
-            }
-            walkers = left;
-            if walkers.is_empty() {
+                let t = walker.t + near.advance(step, stride(scene, walker.t));
+                (t < F::Real::from_f32(FAR)).then_some(t)
+            });
+            if walkers.are_done() {
                 break;
             }
         }

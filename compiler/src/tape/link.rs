@@ -34,6 +34,11 @@ pub struct Link {
     pub kept: bool,
 }
 
+impl Link {
+    /// A step by itself, which reads and writes registers.
+    pub const NONE: Self = Self { carried: Carried::Nothing, kept: true };
+}
+
 /// The links of all steps of a tape; what an interpreter starts at one of the given steps has nothing from the one before.
 #[must_use]
 pub fn links(tape: &Tape, starts: impl Fn(usize) -> bool) -> Vec<Link> {

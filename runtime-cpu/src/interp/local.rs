@@ -328,7 +328,8 @@ impl<'a> Found<'a> {
         }
         let make = || root.with_room(|room| cell.outline.tape(&root.tape, &mut room.room));
         let bytes = cell.outline.steps * STEP;
-        let kept = cell.outline.tape.get_or_init(|| pay(&local.left_for_tapes, bytes).then(make)).as_ref();
+        let keep = || pay(&local.left_for_tapes, bytes).then(|| make().linked());
+        let kept = cell.outline.tape.get_or_init(keep).as_ref();
         Some(kept.map_or_else(|| Cow::Owned(make()), Cow::Borrowed))
     }
 

@@ -37,7 +37,7 @@ impl<F: Fields> Integrator<'_, F> {
                 let free = (distance * distance - radius * radius).max(F::Real::ZERO).sqrt();
                 let t = (walker.t + free.min(near.gap)).min(ends[walker.ray]);
                 clear[walker.ray] = t.max(walker.t);
-                (free >= radius && t < ends[walker.ray]).then_some(t)
+                (free >= radius && t < ends[walker.ray]).then_some(walker.to(t))
             });
             if walkers.are_done() {
                 break;

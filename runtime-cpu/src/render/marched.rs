@@ -197,7 +197,7 @@ impl<F: Fields> Integrator<'_, F> {
                     let half = F::Real::from_f32(0.5) * sure;
                     margins[ray] = margins[ray].min(half.max(F::Real::from_f32(f32::MIN_POSITIVE)));
                 }
-                (t < F::Real::from_f32(FAR)).then_some(t)
+                (t < F::Real::from_f32(FAR)).then_some(walker.to(t))
             });
             if walkers.are_done() {
                 break;

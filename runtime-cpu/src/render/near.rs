@@ -8,11 +8,18 @@
 use super::box_tree::Answer;
 use super::camera::{FAR, Ray, Span};
 use super::fields::{Fields, Points};
-use super::scene::Integrator;
+use super::scene::{Integrator, Stride};
 use super::stride::Ahead;
 use super::surface::MAX_STEPS;
 use crate::real::Real;
 use std::ops::Range;
+
+/// Of how much farther than is sure a step may be where the distance falls evenly. Such a step is just not too long; so
+/// much is left to rounding.
+pub(super) const EAGERNESS: f32 = 1.95;
+
+/// Part of the way to the next side of a box that such a step may take.
+pub(super) const ROOM: f32 = 0.98;
 
 /// A ray on its way.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +30,27 @@ pub(crate) struct Walker<R> {
     pub(crate) t: R,
     /// Where it was one step earlier.
     pub(crate) from: R,
+    /// How far nothing could be from there.
+    free: R,
+    /// Whether it went farther than that.
+    guessed: bool,
+}
+
+impl<R: Real> Walker<R> {
+    /// Starts at a distance from the origin of a ray.
+    pub(super) fn new(ray: usize, t: R) -> Self {
+        Self { ray, t, from: t, free: R::ZERO, guessed: false }
+    }
+
+    /// Goes on to a place up to which nothing can be.
+    pub(crate) fn to(self, t: R) -> Self {
+        Self { ray: self.ray, t, from: self.t, free: t - self.t, guessed: false }
+    }
+
+    /// Goes back to where it was sure to come.
+    pub(crate) fn back(self) -> Self {
+        Self { t: self.from + self.free, guessed: false, ..self }
+    }
 }
 
 /// What a walker has around it.
@@ -38,19 +66,58 @@ pub(crate) struct Near<R> {
     pub(crate) gap: R,
     /// Distance along the ray to the last end of the boxes in which it is.
     pub(crate) rest: R,
+    /// Where the next box begins.
+    entry: R,
+    /// Where the first of the boxes in which it is ends; 0 where a solid tells nothing of what is beside the way.
+    exit: R,
 }
 
 impl<R: Real> Near<R> {
+    /// Nothing.
+    fn nothing() -> Self {
+        let far = R::from_f32(FAR);
+        Self { distance: far, value: far, solid: 0, gap: far, rest: R::ZERO, entry: far, exit: far }
+    }
+
     /// How far to walk: as far as nothing can be, at least by `least`. A ray that has used up half of its
     /// steps is stuck at a surface that it grazes, or in a field that is nearly flat: it goes through what
     /// is left of the boxes in even steps, rather than end in a hole.
     pub(crate) fn advance(&self, step: u32, least: R) -> R {
         let free = self.distance.min(self.gap);
-        let stuck = step > MAX_STEPS / 2;
         let left = R::from_index((MAX_STEPS - step + 1) as i32);
-        let even = if stuck { (self.rest / left).min(self.gap) } else { R::ZERO };
+        let even = if is_stuck(step) { (self.rest / left).min(self.gap) } else { R::ZERO };
         free.max(least).max(even)
     }
+
+    /// Goes on, if possible farther than is sure, up to where the empty ball around the next place just touches the one
+    /// here if the distance goes on falling as it did. Whether it does is known there: [`Near::is_past`]. Only balls around
+    /// the same solids tell of each other, so such a step enters no box and leaves none.
+    ///
+    /// * source: automatic relaxation of sphere tracing (Ban, Valasek 2023) after Keinert et al. 2014
+    pub(crate) fn onward(&self, walker: Walker<R>, step: u32, least: R) -> Walker<R> {
+        let sure = self.advance(step, least);
+        let last = walker.t - walker.from;
+        let is_first = last <= R::ZERO;
+        let fall = ((walker.free - self.distance) / if is_first { R::ONE } else { last }).max(R::ZERO);
+        let touching = (R::from_f32(EAGERNESS) * self.distance) / (R::ONE + fall);
+        let room = R::from_f32(ROOM);
+        let guess = touching.min(room * self.gap).min(room * (self.exit - walker.t));
+        let place = walker.t + guess;
+        let is_inside = (place < self.entry) & (place <= self.exit);
+        let guessed = (guess > sure) & is_inside & !is_first & !is_stuck(step);
+        let t = if guessed { place } else { walker.t + sure };
+        Walker { ray: walker.ray, t, from: walker.t, free: sure, guessed }
+    }
+
+    /// Whether a walker has gone too far: the balls that are empty around this place and the last do not touch.
+    pub(crate) fn is_past(&self, walker: &Walker<R>) -> bool {
+        walker.guessed & (walker.free + self.distance < walker.t - walker.from)
+    }
+}
+
+/// Whether a ray has used up half of its steps.
+fn is_stuck(step: u32) -> bool {
+    step > MAX_STEPS / 2
 }
 
 /// What a solid says at a place.
@@ -106,7 +173,8 @@ impl<R: Real> Joined<R> {
     fn add(&mut self, near: &mut Near<R>, which: usize, wall: &Wall<R>) {
         if wall.value > self.farthest[which] {
             self.farthest[which] = wall.value;
-            *near = Near { gap: near.gap, rest: near.rest, ..self.others[which] };
+            let Near { gap, rest, entry, exit, .. } = *near;
+            *near = Near { gap, rest, entry, exit, ..self.others[which] };
             near.add(wall);
         }
     }
@@ -176,13 +244,11 @@ impl<'a, R: Real> Walkers<'a, R> {
 
     /// All rays at some distances from their origins.
     pub(crate) fn started(rays: &'a [Ray<R>], mut met: Vec<Met<R>>, distances: &[R]) -> Self {
-        let far = R::from_f32(FAR);
-        let nothing = Near { distance: far, value: far, solid: 0, gap: far, rest: R::ZERO };
         let (coming, ahead) = in_order(rays.len(), &mut met);
         Self {
             rays,
-            all: distances.iter().enumerate().map(|(ray, &t)| Walker { ray, t, from: t }).collect(),
-            near: vec![nothing; rays.len()],
+            all: distances.iter().enumerate().map(|(ray, &t)| Walker::new(ray, t)).collect(),
+            near: vec![Near::nothing(); rays.len()],
             going: (0..rays.len()).collect(),
             met,
             entered: Vec::new(),
@@ -199,27 +265,26 @@ impl<'a, R: Real> Walkers<'a, R> {
         self.going.is_empty()
     }
 
-    /// Lets each walker go on to a distance, in the order of the rays; it stops where `step` gives none.
-    pub(crate) fn go(&mut self, mut step: impl FnMut(Walker<R>, &Near<R>) -> Option<R>) {
+    /// Lets each walker take its next step, in the order of the rays; it stops where `step` gives none.
+    pub(crate) fn go(&mut self, mut step: impl FnMut(Walker<R>, &Near<R>) -> Option<Walker<R>>) {
         let (all, near) = (&mut self.all, &self.near);
         self.going.retain(|&ray| {
-            let from = all[ray].t;
-            let to = step(all[ray], &near[ray]);
-            all[ray] = Walker { ray, t: to.unwrap_or(R::from_f32(f32::INFINITY)), from };
-            to.is_some()
+            let next = step(all[ray], &near[ray]);
+            all[ray] = next.unwrap_or(Walker { t: R::from_f32(f32::INFINITY), ..all[ray] });
+            next.is_some()
         });
     }
 
     /// Enters the boxes that walkers have come to and leaves those that they are past; notes how far the next box is, and
     /// the last end of those around.
     fn arrive(&mut self) {
-        let far = R::from_f32(FAR);
         for &ray in &self.going {
             let (t, ahead) = (self.all[ray].t, &mut self.ahead[ray]);
-            let mut gap = far;
+            let far = R::from_f32(FAR);
+            let (mut gap, mut entry) = (far, far);
             while let Some(&Coming { span, met }) = self.coming[ahead.clone()].first() {
                 if t < span.entry {
-                    gap = gap.min(span.entry - t);
+                    (gap, entry) = (span.entry - t, span.entry);
                     break;
                 }
                 ahead.start += 1;
@@ -228,15 +293,19 @@ impl<'a, R: Real> Walkers<'a, R> {
                     self.entered.insert(place, met);
                 }
             }
-            self.near[ray] = Near { distance: far, value: far, solid: 0, gap, rest: R::ZERO };
+            self.near[ray] = Near { gap, entry, ..Near::nothing() };
         }
         let (all, near, met) = (&self.all, &mut self.near, &mut self.met);
         self.entered.retain(|&entered| {
             let parts = &mut met[entered].parts;
             parts.retain(|&(ray, span)| {
                 let (t, near) = (all[ray].t, &mut near[ray]);
-                near.rest = near.rest.max(span.exit - t);
-                t <= span.exit
+                let is_in = t <= span.exit;
+                if is_in {
+                    near.rest = near.rest.max(span.exit - t);
+                    near.exit = near.exit.min(span.exit);
+                }
+                is_in
             });
             !parts.is_empty()
         });
@@ -281,7 +350,7 @@ impl<F: Fields> Integrator<'_, F> {
             self.stats.surface_evaluations += values.len() as u64;
             values.iter_mut().for_each(|value| *value = met.side * *value);
             let ahead = |index: usize| {
-                let Walker { ray, t, from } = all[met.parts[index].0];
+                let Walker { ray, t, from, .. } = all[met.parts[index].0];
                 Ahead { ray: rays[ray], t, last: t - from }
             };
             safe.clone_from(values);
@@ -290,8 +359,12 @@ impl<F: Fields> Integrator<'_, F> {
             if is_within {
                 joined.begin(solid.whole, near);
             }
+            let is_ball = matches!(solid.stride, Stride::Scale(_));
             for ((&(ray, _), &value), &safe) in met.parts.iter().zip(&*values).zip(&*safe) {
                 let wall = Wall { solid: met.solid, value, safe };
+                if !is_ball {
+                    near[ray].exit = F::Real::ZERO;
+                }
                 if is_within {
                     joined.add(&mut near[ray], ray, &wall);
                 } else {
@@ -299,5 +372,56 @@ impl<F: Fields> Integrator<'_, F> {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn near(distance: f32) -> Near<f32> {
+        Near { distance, value: distance, rest: 100.0, ..Near::nothing() }
+    }
+
+    #[test]
+    fn steps_towards_a_plane_grow_as_its_distance_falls_evenly() {
+        // The distance falls by a fifth of the way: a ray at 12 degrees to a plane.
+        let distance = |walker: &Walker<f32>| 1.0 - 0.2 * walker.t;
+        let mut walker = Walker::new(0, 0.0);
+        let mut steps = 0;
+        while distance(&walker) > 1e-3 {
+            let near = near(distance(&walker));
+            assert!(!near.is_past(&walker), "{walker:?}");
+            walker = near.onward(walker, 1, 1e-6);
+            steps += 1;
+        }
+        // One by one they take ln 1000 / -ln 0.8.
+        assert!(walker.t < 5.0 && steps <= 20, "{steps} steps instead of 31");
+    }
+
+    #[test]
+    fn what_lies_between_two_balls_is_not_passed_over() {
+        let first = near(1.0).onward(Walker::new(0, 0.0), 1, 1e-6);
+        assert_eq!((first.t, first.guessed), (1.0, false));
+        // The distance was 1 here, too: there seems to be nothing in sight.
+        let guess = near(1.0).onward(first, 2, 1e-6);
+        assert!(guess.guessed && guess.t > 2.9, "{guess:?}");
+        assert!(!near(0.96).is_past(&guess));
+        // Something is 0.9 away: it may be before this place.
+        assert!(near(0.9).is_past(&guess));
+        let back = guess.back();
+        assert_eq!((back.t, back.from, back.guessed), (2.0, 1.0, false));
+        assert!(!near(-1.0).is_past(&back));
+    }
+
+    #[test]
+    fn no_guess_leaves_a_box_or_enters_one() {
+        let first = near(1.0).onward(Walker::new(0, 0.0), 1, 1e-6);
+        for short in [Near { gap: 1.25, entry: 2.25, ..near(1.0) }, Near { exit: 2.25, ..near(1.0) }] {
+            let next = short.onward(first, 2, 1e-6);
+            assert!(next.guessed && next.t > 2.2 && next.t < 2.25, "{next:?}");
+        }
+        assert_eq!(Near { exit: 0.0, ..near(1.0) }.onward(first, 2, 1e-6).t, 2.0);
+        assert_eq!(near(1.0).onward(first, MAX_STEPS / 2 + 1, 1e-6).t, 2.0);
     }
 }

@@ -124,14 +124,17 @@ impl<F: Fields> Integrator<'_, F> {
         for step in 1..=MAX_STEPS {
             self.nearest(&mut walkers);
             walkers.go(|walker, near| {
+                if near.is_past(&walker) {
+                    return Some(walker.back());
+                }
                 // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
                 let ray = &rays[walker.ray];
                 if ray.enters(near.distance, walker.t) {
                     blocked[walker.ray] = true;
                     return None;
                 }
-                let t = walker.t + near.advance(step, ray.stride);
-                (t < ray.length.min(F::Real::from_f32(FAR))).then_some(t)
+                let next = near.onward(walker, step, ray.stride);
+                (next.t < ray.length.min(F::Real::from_f32(FAR))).then_some(next)
             });
             if walkers.are_done() {
                 break;
@@ -159,7 +162,7 @@ impl<F: Fields> Integrator<'_, F> {
                     return None;
                 }
                 let t = walker.t + near.advance(step, least);
-                (t < length).then_some(t)
+                (t < length).then_some(walker.to(t))
             });
             if walkers.are_done() {
                 break;

@@ -1,4 +1,5 @@
-//! Where rays meet solids: sphere tracing, by what [`super::stride`] makes of the distances.
+//! Where rays meet solids: sphere tracing, by what [`super::stride`] makes of the distances, with steps that go farther
+//! where distances fall evenly ([`super::near`]).
 //!
 //! All rays of a batch walk together, one step each at a time. A tree over the boxes of the solids tells which
 //! of them some ray meets at all; each of these is evaluated for the rays that are inside its box. A solid whose inside holds the eye is seen from within: its
@@ -127,6 +128,9 @@ impl<'a, F: Fields> Integrator<'a, F> {
         for step in 1..=MAX_STEPS {
             self.nearest(&mut walkers);
             walkers.go(|walker, near| {
+                if near.is_past(&walker) {
+                    return Some(walker.back());
+                }
                 // Stop inside a solid; on the last step also where it would have been near enough.
                 let patience = if step == MAX_STEPS { tolerance(scene, walker.t) } else { F::Real::ZERO };
                 if near.value < patience {
@@ -134,8 +138,8 @@ impl<'a, F: Fields> Integrator<'a, F> {
                     return None;
                 }
                 // Walk as far as nothing can be, at least a fortieth of a pixel.
-                let t = walker.t + near.advance(step, stride(scene, walker.t));
-                (t < F::Real::from_f32(FAR)).then_some(t)
+                let next = near.onward(walker, step, stride(scene, walker.t));
+                (next.t < F::Real::from_f32(FAR)).then_some(next)
             });
             if walkers.are_done() {
                 break;
@@ -163,7 +167,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
         solid: usize,
         walkers: Vec<Walker<F::Real>>,
     ) -> Vec<Contact<F::Real>> {
-        let start: Vec<_> = walkers.iter().map(|walker| Walker { t: walker.from, ..*walker }).collect();
+        let start: Vec<_> = walkers.iter().map(|walker| Walker::new(walker.ray, walker.from)).collect();
         let outer = self.values(rays, solid, &start);
         let inner = self.values(rays, solid, &walkers);
         let bracket = |index: usize| {
@@ -198,7 +202,7 @@ impl<'a, F: Fields> Integrator<'a, F> {
         let scene = self.scene;
         let beside = |ray: usize, t: F::Real, side: F::Real| {
             let t = t + side * rounding(scene, t);
-            Walker { ray, t, from: t }
+            Walker::new(ray, t)
         };
         let inside: Vec<_> = ends.iter().map(|&(ray, [t, _])| beside(ray, t, F::Real::ONE)).collect();
         let mut gradients = self.gradients(rays, solid, &inside);
@@ -254,7 +258,7 @@ impl<R: Real> Bracket<R> {
         let ([t, value], [other_t, other_value]) = (self.outside, self.inside);
         let fall = if self.is_proper() { value - other_value } else { R::ONE };
         let t = if self.is_proper() { t + (other_t - t) * (value / fall) } else { other_t };
-        Walker { t, ..*walker }
+        Walker::new(walker.ray, t)
     }
 
     /// Takes the value at the probe into account.

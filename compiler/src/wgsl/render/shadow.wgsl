@@ -51,16 +51,18 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     no_sides(&sides);
     object_spans(ray, &sides, &spans);
     let end = min(distance, FAR);
-    var t = 0.0;
-    var before = 0.0;
+    var walker = Walker(0.0, 0.0, 0.0, false);
     var inside = false;
     for (var count = 1u; count <= MAX_STEPS; count++) {
+        let near = nearest(ray, &spans, &sides, walker.t, walker.before);
+        if (is_past(near, walker)) {
+            walker = back(walker);
+            continue;
+        }
         // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
-        let near = nearest(ray, &spans, &sides, t, before);
-        inside = enters(near.distance, t, least);
-        before = t;
-        t += advance(near, count, least);
-        if (inside | (t >= end)) {
+        inside = enters(near.distance, walker.t, least);
+        walker = onward(near, walker, count, least);
+        if (inside | (walker.t >= end)) {
             break;
         }
     }

@@ -14,7 +14,7 @@ use std::mem::size_of;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use vol_compiler::ops::{Op, operation};
-use vol_compiler::tape::{Register, Scalar, Tape, TapeLoop, TapeOp};
+use vol_compiler::tape::{Link, Register, Scalar, Tape, TapeLoop, TapeOp};
 
 /// Outlines of more steps than this are written with few gaps, since those take memory.
 const LONG: usize = 8 << 10;
@@ -139,7 +139,9 @@ impl Outline {
             }
         }
         short.outputs = self.outputs.iter().map(|output| names[output.index()]).collect();
-        short.linked()
+        // It may be for a single batch, in which links do not gain what it takes to find them.
+        short.links = vec![Link::NONE; short.ops.len()];
+        short
     }
 }
 

@@ -1,8 +1,8 @@
 //! What must not change a picture, and what the pilot and the controls do.
 
 use super::super::{
-    Batches, camera, choose_step, chord, comb, medium, panel, render, render_reference, sampling, shadow,
-    surface,
+    Batches, camera, choose_step, chord, comb, medium, near, panel, render, render_reference, sampling,
+    shadow, surface,
 };
 use super::support::{World, bits, mixed};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -145,6 +145,8 @@ fn twins_share_their_constants() {
         "STOP: f32 = 0x1p-16f".to_owned(),
         format!("MAX_STEPS: u32 = {}u", surface::MAX_STEPS),
         format!("REFINEMENTS: u32 = {}u", surface::REFINEMENTS),
+        format!("EAGERNESS: f32 = {}", near::EAGERNESS),
+        format!("ROOM: f32 = {}", near::ROOM),
         format!("MAX_NODES: i32 = {}", comb::MAX_NODES),
         format!("LAST_NODE: f32 = {}.0", comb::LAST_NODE),
         format!("CHORD_ROUNDS: u32 = {}u", chord::ROUNDS),

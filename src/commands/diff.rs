@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use vol::backend::{Choice, Device};
+use vol::backend::{Choice, Device, Renderer};
 use vol::compare::{self, Difference, FieldReport, GPU_IMAGE, ImageClass, ImageReport, PRECISION};
 use vol::failure::Failure;
 use vol::output::{Format, atomic, png, ramp};
@@ -242,14 +242,16 @@ impl Pictures {
 
 fn compare_pictures(prepared: &Prepared, size: [u32; 2], pair: &Pair<'_>) -> Result<Pictures, Failure> {
     let program = &prepared.session.program;
-    let render = |device: &Device, frame: &Frame, job: &Job| {
-        Ok::<_, Failure>(device.prepare(program)?.render(frame, job, &|_| {}, &CANCELLED)?.image)
+    // Prepared once for both sizes: a pipeline takes a device seconds to compile.
+    let (cpu, gpu) = (pair.cpu.prepare(program)?, pair.gpu.prepare(program)?);
+    let render = |renderer: &Renderer<'_>, frame: &Frame, job: &Job| {
+        Ok::<_, Failure>(renderer.render(frame, job, &|_| {}, &CANCELLED)?.image)
     };
     let mut frame = prepared.styled_frame(size)?;
     let sampling = prepared.session.sampling(&prepared.params, prepared.moment, None, None)?;
     let sampling = Sampling { most: sampling.most.min(MAX_SAMPLES), ..sampling };
     let job = vol_runtime_cpu::choose(program, &mut frame, size, sampling, MAX_ERROR).job;
-    let (on_cpu, on_gpu) = (render(pair.cpu, &frame, &job)?, render(pair.gpu, &frame, &job)?);
+    let (on_cpu, on_gpu) = (render(&cpu, &frame, &job)?, render(&gpu, &frame, &job)?);
     let both = PictureRow::new("cpu-gpu", &on_cpu, &on_gpu, GPU_IMAGE);
     // Rounding shows with few samples as well as with many, and the reference is slow.
     let small = at_most(size, REFERENCE_SIDE);
@@ -258,8 +260,8 @@ fn compare_pictures(prepared: &Prepared, size: [u32; 2], pair: &Pair<'_>) -> Res
     let (step, shadow_step) = (coarse * job.step, coarse * job.shadow_step);
     let job = Job { size: small, step, shadow_step, ..job };
     let reference = compare::reference_picture(program, &frame, &job);
-    let cpu = PictureRow::new("cpu-ref", &render(pair.cpu, &frame, &job)?, &reference, PRECISION);
-    let gpu = PictureRow::new("gpu-ref", &render(pair.gpu, &frame, &job)?, &reference, PRECISION);
+    let cpu = PictureRow::new("cpu-ref", &render(&cpu, &frame, &job)?, &reference, PRECISION);
+    let gpu = PictureRow::new("gpu-ref", &render(&gpu, &frame, &job)?, &reference, PRECISION);
     Ok(Pictures { rows: vec![both, cpu, gpu], cpu: on_cpu, gpu: on_gpu })
 }
 

@@ -64,6 +64,13 @@ impl Isa {
         }
     }
 
+    /// AVX-512, if that is the set: for loops that are written for its instructions alone.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(crate) fn avx512(self) -> Option<V4> {
+        if let Kind::Avx512(simd) = self.0 { Some(simd) } else { None }
+    }
+
     /// Calls a loop compiled for these instructions.
     #[inline(always)]
     pub(crate) fn run<K: Kernel>(self, args: K::Args<'_>) -> K::Out {

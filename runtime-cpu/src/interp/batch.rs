@@ -6,6 +6,8 @@
 
 mod curve;
 mod noise;
+#[cfg(target_arch = "x86_64")]
+mod registers;
 
 use super::LANES;
 use crate::isa::{Isa, kernel};

@@ -1,4 +1,5 @@
-//! Noises in f32, the same text as `compiler/src/wgsl/noise.wgsl`; each room is the twin of a file there.
+//! Noises in f32, the same text as `compiler/src/wgsl/noise.wgsl`; each room is the twin of a file there, but for `table`: shaders look
+//! corners up one by one.
 //!
 //! In: a point in lattice units (one cell is one unit) and a seed. Out: improved Perlin noise, its
 //! exact gradient, and sums of octaves; the other noises are in rooms of their own. Example: `perlin([3.14, 42.0, 7.0], 0)` is 0.136919…,
@@ -13,15 +14,20 @@
 
 mod perlin4;
 mod simplex;
+mod table;
 mod value;
 mod worley;
 
 pub use perlin4::{perlin4, perlin4_gradient};
 pub use simplex::{simplex, simplex_gradient};
+use table::TABLE_CODES;
+pub use table::table_codes;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use table::{CODE_PAIRS, PAIRS};
 pub use value::{value, value_gradient};
 pub use worley::{Nearest, worley, worley_gradient};
 
-use vol_compiler::noise_table::{PERMUTATION, hash_cell, hash_word, unit_number};
+use vol_compiler::noise_table::{hash_cell, hash_word, unit_number};
 
 use super::fun::{floor, hold, whole_to_int};
 
@@ -34,11 +40,10 @@ const PRODUCT: f32 = 1.099_511_6e12;
 /// Most octaves a sum may have.
 const OCTAVES: f32 = 32.0;
 
-/// One lattice cell: its whole coordinates, the place inside it, and the fade weights there.
+/// One lattice cell: its whole coordinates and the place inside it.
 struct Cell {
     corner: [i32; 3],
     place: [f32; 3],
-    fade: [f32; 3],
 }
 
 /// Find the cell of a point.
@@ -47,7 +52,7 @@ fn cell_of(p: [f32; 3]) -> Cell {
     let held = p.map(|x| hold(x, -FIELD, FIELD));
     let whole = held.map(floor);
     let place = [held[0] - whole[0], held[1] - whole[1], held[2] - whole[2]];
-    Cell { corner: whole.map(whole_to_int), place, fade: place.map(fade) }
+    Cell { corner: whole.map(whole_to_int), place }
 }
 
 /// Weight `6 t^5 - 15 t^4 + 10 t^3`, t in [0, 1].
@@ -75,44 +80,55 @@ fn lerp(t: f32, a: f32, b: f32) -> f32 {
     a + (t * (b - a))
 }
 
+/// How many codes hashes have.
+const HASH_CODES: u32 = 16;
+
 /// Dot product of the edge gradient `code & 15` with an offset: the author's rule, 12 directions
-/// of which 4 count twice.
+/// of which 4 count twice, where there are 16 `CODES`.
 #[inline(always)]
-fn edge_value(code: u32, x: f32, y: f32, z: f32) -> f32 {
-    let u = if code < 8 { x } else { y };
-    let v = if code < 4 { y } else { other_axis(code, x, z) };
-    let signed_u = if (code & 1) != 0 { -u } else { u };
-    let signed_v = if (code & 2) != 0 { -v } else { v };
-    signed_u + signed_v
+fn edge_value<const CODES: u32>(code: u32, x: f32, y: f32, z: f32) -> f32 {
+    let u = if (code & 8) == 0 { x } else { y };
+    let v = if (code & 12) == 0 { y } else { other_axis::<CODES>(code, x, z) };
+    flipped(u, code << 31) + flipped(v, code << 30)
+}
+
+/// `x`, negated where the highest of `bits` is set: fewer vector instructions than a choice.
+#[inline(always)]
+fn flipped(x: f32, bits: u32) -> f32 {
+    f32::from_bits(x.to_bits() ^ (bits & 0x8000_0000))
 }
 
 /// Codes 12 and 14 take x, the others z.
 #[inline(always)]
-fn other_axis(code: u32, x: f32, z: f32) -> f32 {
-    if (code & 13) == 12 { x } else { z }
+fn other_axis<const CODES: u32>(code: u32, x: f32, z: f32) -> f32 {
+    if wraps::<CODES>(code) { x } else { z }
+}
+
+#[inline(always)]
+fn wraps<const CODES: u32>(code: u32) -> bool {
+    CODES > 12 && (code & 13) == 12
 }
 
 /// The edge gradient itself, two of three components ±1.
 #[inline(always)]
-fn edge_vector(code: u32) -> [f32; 3] {
-    let signed_u = if (code & 1) != 0 { -1.0 } else { 1.0 };
-    let signed_v = if (code & 2) != 0 { -1.0 } else { 1.0 };
-    let wraps = (code & 13) == 12;
-    let x = if code < 8 {
+fn edge_vector<const CODES: u32>(code: u32) -> [f32; 3] {
+    let (signed_u, signed_v) = (flipped(1.0, code << 31), flipped(1.0, code << 30));
+    let wraps = wraps::<CODES>(code);
+    let x = if (code & 8) == 0 {
         signed_u
     } else if wraps {
         signed_v
     } else {
         0.0
     };
-    let y = if code < 4 {
+    let y = if (code & 12) == 0 {
         signed_v
-    } else if code < 8 {
+    } else if (code & 8) == 0 {
         0.0
     } else {
         signed_u
     };
-    let z = if (code < 4) | wraps { 0.0 } else { signed_v };
+    let z = if ((code & 12) == 0) | wraps { 0.0 } else { signed_v };
     [x, y, z]
 }
 
@@ -122,42 +138,26 @@ fn hashed_code(corner: [i32; 3], [i, j, k]: [i32; 3], seed: u32) -> u32 {
     hash_cell(corner[0] + i, corner[1] + j, corner[2] + k, seed)
 }
 
-/// Whole coordinates of the cell of a point.
+/// Whole coordinates of the cell of a point, and the place inside it.
 #[inline(always)]
-pub fn cell_corner(p: [f32; 3]) -> [i32; 3] {
-    cell_of(p).corner
+pub fn cell_and_place(p: [f32; 3]) -> ([i32; 3], [f32; 3]) {
+    let c = cell_of(p);
+    (c.corner, c.place)
 }
 
-/// Gradient codes of all corners of a cell by the published permutation, four bits each: that of `(i, j, k)` starts at
-/// bit `4 (i + 2 j + 4 k)`. Tables are looked up one point after the other; all else vectorises.
-pub fn table_codes(corner: [i32; 3]) -> u32 {
-    let [x, y, z] = corner;
-    let look = |i: i32| i32::from(PERMUTATION[(i & 255) as usize]);
-    let mut codes = 0;
-    for i in 0..2 {
-        let by_x = look(x + i);
-        for j in 0..2 {
-            let by_y = look(by_x + y + j);
-            for k in 0..2 {
-                codes |= (look(by_y + z + k) & 15) << (4 * (i + 2 * j + 4 * k));
-            }
-        }
-    }
-    codes as u32
-}
-
-/// The code of a corner among [`table_codes`].
+/// The code of a corner among [`table_codes`] in the lowest four bits. Codes of other corners are left above it: of
+/// numbers below 16 the compiler makes comparisons, which need the bits shifted to their places, where a test does not.
 #[inline(always)]
 fn packed_code(codes: u32, [i, j, k]: [i32; 3]) -> u32 {
-    (codes >> (4 * (i + 2 * j + 4 * k))) & 15
+    codes >> (4 * (i + 2 * j + 4 * k))
 }
 
 /// Value of the noise in a cell, given the codes of its corners.
 #[inline(always)]
-fn lattice(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> f32 {
-    let [u, v, w] = c.fade;
+fn lattice<const CODES: u32>(place: [f32; 3], code: impl Fn([i32; 3]) -> u32) -> f32 {
+    let [u, v, w] = place.map(fade);
     let corner = |i: i32, j: i32, k: i32| {
-        edge_value(code([i, j, k]), c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32)
+        edge_value::<CODES>(code([i, j, k]), place[0] - i as f32, place[1] - j as f32, place[2] - k as f32)
     };
     // Blend the four edges along x.
     let e00 = lerp(u, corner(0, 0, 0), corner(1, 0, 0));
@@ -178,20 +178,25 @@ fn lattice(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> f32 {
 /// * source: K. Perlin 2002; published fact `noise(3.14, 42, 7) = 0.13691995878400012`
 #[inline(always)]
 pub fn perlin(p: [f32; 3], seed: u32) -> f32 {
-    if seed == 0 { perlin_of_codes(p, table_codes(cell_corner(p))) } else { perlin_hashed(p, seed) }
+    if seed == 0 {
+        let c = cell_of(p);
+        perlin_of_codes(c.place, table_codes(c.corner))
+    } else {
+        perlin_hashed(p, seed)
+    }
 }
 
 /// [`perlin`] with a seed that is not 0.
 #[inline(always)]
 pub fn perlin_hashed(p: [f32; 3], seed: u32) -> f32 {
     let c = cell_of(p);
-    lattice(&c, |ijk| hashed_code(c.corner, ijk, seed))
+    lattice::<HASH_CODES>(c.place, |ijk| hashed_code(c.corner, ijk, seed))
 }
 
-/// [`perlin`] with seed 0, given the [`table_codes`] of the point's cell.
+/// [`perlin`] with seed 0, given the place inside a cell and the cell's [`table_codes`].
 #[inline(always)]
-pub fn perlin_of_codes(p: [f32; 3], codes: u32) -> f32 {
-    lattice(&cell_of(p), |ijk| packed_code(codes, ijk))
+pub fn perlin_of_codes(place: [f32; 3], codes: u32) -> f32 {
+    lattice::<TABLE_CODES>(place, |ijk| packed_code(codes, ijk))
 }
 
 /// A value with what its gradient is made of: blended corner gradients, and the slopes by which
@@ -215,12 +220,12 @@ fn blend<const N: usize>(axis: usize, t: f32, a: Blend<N>, b: Blend<N>) -> Blend
 
 /// Value and gradient of the noise in a cell, given the codes of its corners.
 #[inline(always)]
-fn lattice_gradient(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> [f32; 4] {
-    let [u, v, w] = c.fade;
+fn lattice_gradient<const CODES: u32>(place: [f32; 3], code: impl Fn([i32; 3]) -> u32) -> [f32; 4] {
+    let [u, v, w] = place.map(fade);
     let at = |i: i32, j: i32, k: i32| {
         let code = code([i, j, k]);
-        let value = edge_value(code, c.place[0] - i as f32, c.place[1] - j as f32, c.place[2] - k as f32);
-        Blend { value, gradient: edge_vector(code), slope: [0.0; 3] }
+        let value = edge_value::<CODES>(code, place[0] - i as f32, place[1] - j as f32, place[2] - k as f32);
+        Blend { value, gradient: edge_vector::<CODES>(code), slope: [0.0; 3] }
     };
     // Blend the four edges along x.
     let e00 = blend(0, u, at(0, 0, 0), at(1, 0, 0));
@@ -230,9 +235,9 @@ fn lattice_gradient(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> [f32; 4] {
     // Blend along y, then along z.
     let whole = blend(2, w, blend(1, v, e00, e10), blend(1, v, e01, e11));
     // Add the slopes of the weights to the blended gradients.
-    let dx = whole.gradient[0] + (fade_slope(c.place[0]) * whole.slope[0]);
-    let dy = whole.gradient[1] + (fade_slope(c.place[1]) * whole.slope[1]);
-    let dz = whole.gradient[2] + (fade_slope(c.place[2]) * whole.slope[2]);
+    let dx = whole.gradient[0] + (fade_slope(place[0]) * whole.slope[0]);
+    let dy = whole.gradient[1] + (fade_slope(place[1]) * whole.slope[1]);
+    let dz = whole.gradient[2] + (fade_slope(place[2]) * whole.slope[2]);
     [whole.value, dx, dy, dz]
 }
 
@@ -244,7 +249,8 @@ fn lattice_gradient(c: &Cell, code: impl Fn([i32; 3]) -> u32) -> [f32; 4] {
 #[inline(always)]
 pub fn perlin_gradient(p: [f32; 3], seed: u32) -> [f32; 4] {
     if seed == 0 {
-        perlin_gradient_of_codes(p, table_codes(cell_corner(p)))
+        let c = cell_of(p);
+        perlin_gradient_of_codes(c.place, table_codes(c.corner))
     } else {
         perlin_gradient_hashed(p, seed)
     }
@@ -254,13 +260,13 @@ pub fn perlin_gradient(p: [f32; 3], seed: u32) -> [f32; 4] {
 #[inline(always)]
 pub fn perlin_gradient_hashed(p: [f32; 3], seed: u32) -> [f32; 4] {
     let c = cell_of(p);
-    lattice_gradient(&c, |ijk| hashed_code(c.corner, ijk, seed))
+    lattice_gradient::<HASH_CODES>(c.place, |ijk| hashed_code(c.corner, ijk, seed))
 }
 
-/// [`perlin_gradient`] with seed 0, given the [`table_codes`] of the point's cell.
+/// [`perlin_gradient`] with seed 0, given the place inside a cell and the cell's [`table_codes`].
 #[inline(always)]
-pub fn perlin_gradient_of_codes(p: [f32; 3], codes: u32) -> [f32; 4] {
-    lattice_gradient(&cell_of(p), |ijk| packed_code(codes, ijk))
+pub fn perlin_gradient_of_codes(place: [f32; 3], codes: u32) -> [f32; 4] {
+    lattice_gradient::<TABLE_CODES>(place, |ijk| packed_code(codes, ijk))
 }
 
 /// Number of octaves as an integer: whole part held within 0..=32.

@@ -3,6 +3,8 @@
 //! Values are those of [`crate::math::noise`] bit for bit (test `noise_is_that_of_the_kernels`); the
 //! loops are turned around so that the lanes vectorise.
 
+#[cfg(target_arch = "x86_64")]
+use super::registers::LookUp;
 use super::{LANES, Operands, Out};
 use crate::isa::{Isa, Kernel, kernel};
 use crate::math::noise::{self, Nearest, next_octave, octave_count};
@@ -13,49 +15,57 @@ type Row<'a> = &'a [f32];
 
 /// [`noise::perlin`] in each lane.
 pub(super) fn perlin(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
-    values(isa, [x[0], x[1], x[2]], &mut out[0].0, seed);
+    values(isa, [x[0], x[1], x[2]], &mut Cells::new(), &mut out[0].0, seed);
     1
 }
 
 /// [`noise::perlin_gradient`] in each lane.
 pub(super) fn perlin_gradient(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let [value, dx, dy, dz, ..] = out;
-    gradients(isa, [x[0], x[1], x[2]], [&mut value.0, &mut dx.0, &mut dy.0, &mut dz.0], seed);
+    let out = [&mut value.0, &mut dx.0, &mut dy.0, &mut dz.0];
+    gradients(isa, [x[0], x[1], x[2]], &mut Cells::new(), out, seed);
     4
 }
 
-fn values(isa: Isa, point: [Row<'_>; 3], out: &mut [f32; LANES], seed: u32) {
+fn values(isa: Isa, point: [Row<'_>; 3], cells: &mut Cells, out: &mut [f32; LANES], seed: u32) {
     if seed == 0 {
-        isa.run::<CodedValues>((point, &codes(isa, point), out));
+        isa.run::<Find>((point, cells));
+        look_up(isa, cells);
+        isa.run::<CodedValues>((cells, out));
     } else {
         isa.run::<HashedValues>((point, out, seed));
     }
 }
 
-fn gradients(isa: Isa, point: [Row<'_>; 3], out: [&mut [f32; LANES]; 4], seed: u32) {
+fn gradients(isa: Isa, point: [Row<'_>; 3], cells: &mut Cells, out: [&mut [f32; LANES]; 4], seed: u32) {
     if seed == 0 {
-        isa.run::<CodedGradients>((point, &codes(isa, point), out));
+        isa.run::<Find>((point, cells));
+        look_up(isa, cells);
+        isa.run::<CodedGradients>((cells, out));
     } else {
         isa.run::<HashedGradients>((point, out, seed));
     }
 }
 
-/// [`noise::table_codes`] in each lane.
-fn codes(isa: Isa, point: [Row<'_>; 3]) -> [u32; LANES] {
-    let mut corners = [[0; LANES]; 3];
-    isa.run::<Corners>((point, &mut corners));
-    let [x, y, z] = &corners;
-    let mut codes = [0; LANES];
+/// Sets the codes of cells.
+fn look_up(isa: Isa, cells: &mut Cells) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = isa.avx512() {
+        return simd.vectorize(LookUp { simd, cells });
+    }
+    look_up_one_by_one(cells);
+}
+
+/// Only where the cell changes: neighbours on a ray are often in the same.
+fn look_up_one_by_one(Cells { points, corner: [x, y, z], codes, .. }: &mut Cells) {
     let mut last = ([0; 3], noise::table_codes([0; 3]));
-    for lane in 0..point[0].len().min(LANES) {
-        // Neighbours on a ray are often in the same cell.
+    for lane in 0..*points {
         let corner = [x[lane], y[lane], z[lane]];
         if corner != last.0 {
-            last = (corner, noise::table_codes(corner));
+            last = (corner, noise::table_codes([x[lane].into(), y[lane].into(), z[lane].into()]));
         }
         codes[lane] = last.1;
     }
-    codes
 }
 
 /// Rows of the same number of points, at most a batch.
@@ -65,21 +75,42 @@ fn even([x, y, z]: [Row<'_>; 3]) -> (usize, [Row<'_>; 3]) {
     (n, [&x[..n], &y[..n], &z[..n]])
 }
 
+/// The cells that the points of a batch are in.
+pub(super) struct Cells {
+    /// How many points there are.
+    pub(super) points: usize,
+    /// Whole coordinates, which the table takes modulo 256.
+    pub(super) corner: [[u16; LANES]; 3],
+    /// The places inside.
+    place: [[f32; LANES]; 3],
+    /// [`noise::table_codes`].
+    pub(super) codes: [u32; LANES],
+}
+
+impl Cells {
+    fn new() -> Self {
+        Self { points: 0, corner: [[0; LANES]; 3], place: [[0.0; LANES]; 3], codes: [0; LANES] }
+    }
+}
+
 kernel! {
-    fn Corners<'a>((point, corners): ([Row<'a>; 3], &'a mut [[i32; LANES]; 3])) {
+    fn Find<'a>((point, cells): ([Row<'a>; 3], &'a mut Cells)) {
         let (n, [x, y, z]) = even(point);
+        cells.points = n;
         for lane in 0..n {
-            [corners[0][lane], corners[1][lane], corners[2][lane]] =
-                noise::cell_corner([x[lane], y[lane], z[lane]]);
+            let (corner, place) = noise::cell_and_place([x[lane], y[lane], z[lane]]);
+            [cells.corner[0][lane], cells.corner[1][lane], cells.corner[2][lane]] =
+                [corner[0] as u16, corner[1] as u16, corner[2] as u16];
+            [cells.place[0][lane], cells.place[1][lane], cells.place[2][lane]] = place;
         }
     }
 }
 
 kernel! {
-    fn CodedValues<'a>((point, codes, out): ([Row<'a>; 3], &'a [u32; LANES], &'a mut [f32; LANES])) {
-        let (n, [x, y, z]) = even(point);
-        for lane in 0..n {
-            out[lane] = noise::perlin_of_codes([x[lane], y[lane], z[lane]], codes[lane]);
+    fn CodedValues<'a>((cells, out): (&'a Cells, &'a mut [f32; LANES])) {
+        let [x, y, z] = &cells.place;
+        for lane in 0..cells.points.min(LANES) {
+            out[lane] = noise::perlin_of_codes([x[lane], y[lane], z[lane]], cells.codes[lane]);
         }
     }
 }
@@ -94,11 +125,11 @@ kernel! {
 }
 
 kernel! {
-    fn CodedGradients<'a>((point, codes, out): ([Row<'a>; 3], &'a [u32; LANES], [&'a mut [f32; LANES]; 4])) {
-        let (n, [x, y, z]) = even(point);
+    fn CodedGradients<'a>((cells, out): (&'a Cells, [&'a mut [f32; LANES]; 4])) {
+        let [x, y, z] = &cells.place;
         let [value, dx, dy, dz] = out;
-        for lane in 0..n {
-            let found = noise::perlin_gradient_of_codes([x[lane], y[lane], z[lane]], codes[lane]);
+        for lane in 0..cells.points.min(LANES) {
+            let found = noise::perlin_gradient_of_codes([x[lane], y[lane], z[lane]], cells.codes[lane]);
             [value[lane], dx[lane], dy[lane], dz[lane]] = found;
         }
     }
@@ -256,7 +287,7 @@ impl<const OUT: usize> Kernel for Worley<OUT> {
 /// [`noise::fbm`] in each lane.
 pub(super) fn fbm(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let n = x[0].len();
-    let mut octaves = Octaves::new(x[3]);
+    let (mut octaves, mut cells) = (Octaves::new(x[3]), Cells::new());
     let mut noise = [0.0; LANES];
     let sum = &mut out[0].0;
     sum.fill(0.0);
@@ -264,7 +295,7 @@ pub(super) fn fbm(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize
         // Add one octave.
         isa.run::<Scale>((&mut octaves, x));
         let [px, py, pz] = &octaves.scaled;
-        values(isa, [&px[..n], &py[..n], &pz[..n]], &mut noise, seed);
+        values(isa, [&px[..n], &py[..n], &pz[..n]], &mut cells, &mut noise, seed);
         isa.run::<Add>((&octaves, octave, sum, &octaves.amplitude, &noise));
         // Step to the next.
         isa.run::<Step>((&mut octaves, x[4], x[5]));
@@ -275,14 +306,14 @@ pub(super) fn fbm(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize
 /// [`noise::fbm_gradient`] in each lane.
 pub(super) fn fbm_gradient(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32) -> usize {
     let n = x[0].len();
-    let mut octaves = Octaves::new(x[3]);
+    let (mut octaves, mut cells) = (Octaves::new(x[3]), Cells::new());
     let mut noise = [[0.0; LANES]; 4];
     out[..4].iter_mut().for_each(|sum| sum.0.fill(0.0));
     for octave in 0..octaves.most() {
         // Add one octave; the chain rule brings the frequency down.
         isa.run::<Scale>((&mut octaves, x));
         let [px, py, pz] = &octaves.scaled;
-        gradients(isa, [&px[..n], &py[..n], &pz[..n]], noise.each_mut(), seed);
+        gradients(isa, [&px[..n], &py[..n], &pz[..n]], &mut cells, noise.each_mut(), seed);
         let steepness = octaves.steepness();
         isa.run::<Add>((&octaves, octave, &mut out[0].0, &octaves.amplitude, &noise[0]));
         for i in 1..4 {
@@ -292,4 +323,61 @@ pub(super) fn fbm_gradient(isa: Isa, x: &Operands<'_>, out: &mut Out, seed: u32)
         isa.run::<Step>((&mut octaves, x[4], x[5]));
     }
     4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interp::batch::Lanes;
+    use std::iter;
+
+    /// Coordinates where cells begin, where the table repeats, and where they are held.
+    const AWKWARD: [f32; 14] = [
+        0.0, -0.0, -0.5, -1e-40, 63.5, 127.9, -128.0, 255.5, 256.0, -256.5, 65_535.5, -65_536.5, 3e38, -3e38,
+    ];
+
+    /// Awkward coordinates between others, in another order for each axis.
+    fn coordinate(axis: usize, lane: usize) -> f32 {
+        if lane % 3 == axis {
+            AWKWARD[(lane * (3 + 2 * axis)) % AWKWARD.len()]
+        } else {
+            ((lane * (axis + 2)) as f32 * 37.31) % 700.0 - 350.0
+        }
+    }
+
+    #[test]
+    fn published_noise_is_that_of_the_kernels_at_all_lengths() {
+        let row = |value: fn(usize) -> f32| (0..LANES).map(value).collect::<Vec<f32>>();
+        let rows: [Vec<f32>; 6] = [
+            row(|lane| coordinate(0, lane)),
+            row(|lane| coordinate(1, lane)),
+            row(|lane| coordinate(2, lane)),
+            row(|lane| (lane % 5) as f32),
+            row(|lane| 1.7 + 0.01 * lane as f32),
+            row(|lane| 0.6 - 0.01 * lane as f32),
+        ];
+        for isa in Isa::all() {
+            for n in 1..=LANES {
+                let x: Operands<'_> = array::from_fn(|i| &rows[i][LANES - n..]);
+                let mut found: [Out; 4] = array::from_fn(|_| array::from_fn(|_| Lanes::default()));
+                perlin(isa, &x, &mut found[0], 0);
+                perlin_gradient(isa, &x, &mut found[1], 0);
+                fbm(isa, &x, &mut found[2], 0);
+                fbm_gradient(isa, &x, &mut found[3], 0);
+                for lane in 0..n {
+                    let [p0, p1, p2, octaves, lacunarity, gain] = x.map(|row| row[lane]);
+                    let p = [p0, p1, p2];
+                    let expected = iter::once(noise::perlin(p, 0))
+                        .chain(noise::perlin_gradient(p, 0))
+                        .chain([noise::fbm(p, octaves, lacunarity, gain, 0)])
+                        .chain(noise::fbm_gradient(p, octaves, lacunarity, gain, 0));
+                    let found = found.iter().zip([1, 4, 1, 4]).flat_map(|(out, results)| &out[..results]);
+                    for (i, (found, expected)) in found.zip(expected).enumerate() {
+                        let found = found.0[lane];
+                        assert_eq!(found.to_bits(), expected.to_bits(), "{} {p:?} of {n}: {i}", isa.name());
+                    }
+                }
+            }
+        }
+    }
 }

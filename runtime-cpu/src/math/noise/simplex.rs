@@ -1,7 +1,7 @@
 //! Simplex noise in f32, the same text as `compiler/src/wgsl/noise/simplex.wgsl`.
 
 use super::super::fun::{floor, greater, hold, whole_to_int};
-use super::{FIELD, edge_value, edge_vector};
+use super::{FIELD, HASH_CODES, edge_value, edge_vector};
 use vol_compiler::noise_table::hash_word;
 
 /// Factor that makes the largest value 0.99993.
@@ -56,8 +56,8 @@ fn simplex_corner(s: &Simplex, way: [i32; 3], unskew: f32, seed: u32) -> [f32; 4
     let inside = greater(0.5 - ((x * x + y * y) + z * z), 0.0);
     let squared = inside * inside;
     let weight = squared * squared;
-    let edge = edge_vector(code);
-    let value = edge_value(code, x, y, z);
+    let edge = edge_vector::<HASH_CODES>(code);
+    let value = edge_value::<HASH_CODES>(code, x, y, z);
     let pull = (8.0 * (squared * inside)) * value;
     [
         weight * value,

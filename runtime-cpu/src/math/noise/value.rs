@@ -1,6 +1,6 @@
 //! Value noise in f32, the same text as `compiler/src/wgsl/noise/value.wgsl`.
 
-use super::{Cell, cell_of, fade_slope, lerp};
+use super::{Cell, cell_of, fade, fade_slope, lerp};
 use vol_compiler::noise_table::{hash_word, unit_number};
 
 /// Random number of the corner `(i, j, k)` of a cell, -1 to below 1, exact.
@@ -29,7 +29,7 @@ pub fn value(p: [f32; 3], seed: u32) -> f32 {
 #[inline(always)]
 pub fn value_gradient(p: [f32; 3], seed: u32) -> [f32; 4] {
     let c = cell_of(p);
-    let [u, v, w] = c.fade;
+    let [u, v, w] = c.place.map(fade);
     let at = |i: i32, j: i32, k: i32| corner_number(&c, i, j, k, seed);
     let [c000, c010, c001, c011] = [at(0, 0, 0), at(0, 1, 0), at(0, 0, 1), at(0, 1, 1)];
     // Rise of the four edges along x, and their blends.

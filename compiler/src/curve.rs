@@ -108,6 +108,40 @@ impl Piece {
     /// Words of one piece in the buffer `vol_curves`.
     pub const WORDS: usize = 60;
 
+    /// All words 0.
+    pub const ZERO: Self = Self {
+        origin: [0.0; 3],
+        origin_low: [0.0; 3],
+        b1: [0.0; 3],
+        b2: [0.0; 3],
+        tangent: [0.0; 3],
+        normal: [0.0; 3],
+        binormal: [0.0; 3],
+        bend: [0.0; 3],
+        a3: 0.0,
+        a2: 0.0,
+        b11: 0.0,
+        vertex: 0.0,
+        inv_a3: 0.0,
+        t_start: 0.0,
+        t_span: 0.0,
+        s_start: 0.0,
+        sense: 0.0,
+        q: 0.0,
+        log_scale: 0.0,
+        log_base: 0.0,
+        straight: 0.0,
+        before: 0.0,
+        after: 0.0,
+        curve_length: 0.0,
+        end: [0.0; 3],
+        end_low: [0.0; 3],
+        end_tangent: [0.0; 3],
+        tangent_before: [0.0; 3],
+        lo: [0.0; 3],
+        hi: [0.0; 3],
+    };
+
     /// The piece as words, in field order.
     pub fn words(&self) -> [f32; Self::WORDS] {
         let mut words = [0.0; Self::WORDS];

@@ -147,7 +147,13 @@ fn closest_points_are_those_of_the_kernel() {
     let body = "fn f(3) {\n%0 = input 0\n%1 = input 1\n%2 = input 2\n%3 = closest[0] %0 %1 %2\n%4 = extract %3 0\n\
         %5 = extract %3 3\n%6 = extract %3 7\n%7 = extract %3 5\nreturn %4 %5 %6 %7\n}";
     let module = module(vec![text::parse_function(body).expect("well-formed text")]);
-    let inputs = arguments(8, 300, 3);
+    let mut inputs = arguments(8, 300, 3);
+    // Groups beside one place, in the middle of a ring, whose pieces are all as near, and of both kinds.
+    for i in 0..96 {
+        let beside = [1.0 + 0.001 * i as f32, 0.0, 0.1];
+        let place = if i < 32 || (i >= 64 && i % 5 > 0) { beside } else { [1e-4 * i as f32, 0.0, 0.0] };
+        inputs.iter_mut().zip(place).for_each(|(column, x)| column[i] = x);
+    }
     // Short, long enough for boxes, and no curve at all.
     let spiral = |i: usize| [0.1, 0.2].map(|part| (i as f64 * 0.2 + part) * 0.4);
     let place = |angle: f64| [angle.cos() * 3.0, 0.2 * angle - 3.0, angle.sin() * (1.0 + 0.1 * angle)];
@@ -157,7 +163,10 @@ fn closest_points_are_those_of_the_kernel() {
             Quadratic { a: place(i as f64 * 0.08), b: middle, c: end }
         })
         .collect();
-    for segments in [curves()[0].clone(), long, Vec::new()] {
+    let ring = |part: f64| [part.cos(), part.sin(), 0.0];
+    let ring = |i: usize| [0.0, 0.05, 0.1].map(|part| ring(i as f64 * 0.1 + part));
+    let ring = (0..60).map(ring).map(|[a, b, c]| Quadratic { a, b, c }).collect();
+    for segments in [curves()[0].clone(), long, ring, Vec::new()] {
         let table = prepare(&segments);
         let (tapes, curves) = (Tapes::of_module(&module), [table.clone()]);
         let mut evaluator = Evaluator::of_parts(&tapes, &UNIFORMS, &curves);

@@ -20,7 +20,7 @@ use super::fun::{greater, hold, lesser, log2};
 /// Below this a divisor counts as it: quotients stay finite.
 const TINY: f32 = 1e-30;
 /// Distance to a curve without pieces, scene units.
-const FAR: f32 = 1e18;
+pub const FAR: f32 = 1e18;
 /// Points farther out are held here, scene units.
 const REACH: f32 = 1e8;
 /// Largest stretch reported.

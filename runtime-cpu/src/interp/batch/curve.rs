@@ -1,12 +1,16 @@
-//! Closest points of a batch: pieces outside, lanes inside.
+//! Closest points of a batch: pieces outside, lanes inside; of long curves only the pieces that may be nearest ([`tree`]).
 //!
 //! Values are those of [`crate::math::curve::closest`] bit for bit (test
 //! `closest_points_are_those_of_the_kernel`); the loops are turned around so that the lanes of the
 //! search vectorise.
 
+mod own;
+mod tree;
+
 use super::{LANES, Operands, Out};
 use crate::isa::{Isa, Kernel, kernel};
-use crate::math::curve::{self, CurvePoint, Search, feet, nodes};
+use crate::math::curve::{self, CurvePoint, Search, feet};
+use own::Described;
 use vol_compiler::curve::{Node, Piece};
 use vol_compiler::ops::MAX_RESULTS;
 
@@ -20,15 +24,10 @@ struct Searches {
 }
 
 impl Searches {
-    fn new(x: &Operands<'_>) -> Self {
-        let mut point = [[0.0; LANES]; 3];
-        let [px, py, pz] = &mut point;
-        let lanes = px.iter_mut().zip(py).zip(pz).zip(x[0].iter().zip(x[1]).zip(x[2]));
-        for (((px, py), pz), ((&x, &y), &z)) in lanes {
-            [*px, *py, *pz] = curve::held_point([x, y, z]);
-        }
+    /// Nothing visited, all points 0.
+    fn start() -> Self {
         Self {
-            point,
+            point: [[0.0; LANES]; 3],
             dist_sq: [Search::START.dist_sq; LANES],
             t: [Search::START.t; LANES],
             piece: [Search::START.piece; LANES],
@@ -36,9 +35,37 @@ impl Searches {
         }
     }
 
+    fn new(x: &Operands<'_>) -> Self {
+        let mut all = Self::start();
+        let [px, py, pz] = &mut all.point;
+        let lanes = px.iter_mut().zip(py).zip(pz).zip(x[0].iter().zip(x[1]).zip(x[2]));
+        for (((px, py), pz), ((&x, &y), &z)) in lanes {
+            [*px, *py, *pz] = curve::held_point([x, y, z]);
+        }
+        all
+    }
+
     #[inline(always)]
     fn point(&self, lane: usize) -> [f32; 3] {
         [self.point[0][lane], self.point[1][lane], self.point[2][lane]]
+    }
+
+    #[inline(always)]
+    fn search(&self, lane: usize) -> Search {
+        Search {
+            dist_sq: self.dist_sq[lane],
+            t: self.t[lane],
+            piece: self.piece[lane],
+            left_at_last: self.left_at_last[lane] != 0,
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, lane: usize, search: Search) {
+        self.dist_sq[lane] = search.dist_sq;
+        self.t[lane] = search.t;
+        self.piece[lane] = search.piece;
+        self.left_at_last[lane] = u32::from(search.left_at_last);
     }
 }
 
@@ -46,17 +73,8 @@ kernel! {
     /// Visits the next piece in the first `n` lanes.
     fn Visit<'a>((all, n, piece, index): (&'a mut Searches, usize, Piece, u32)) {
         for lane in 0..n.min(LANES) {
-            let search = Search {
-                dist_sq: all.dist_sq[lane],
-                t: all.t[lane],
-                piece: all.piece[lane],
-                left_at_last: all.left_at_last[lane] != 0,
-            };
-            let next = search.visit(all.point(lane), &piece, index);
-            all.dist_sq[lane] = next.dist_sq;
-            all.t[lane] = next.t;
-            all.piece[lane] = next.piece;
-            all.left_at_last[lane] = u32::from(next.left_at_last);
+            let next = all.search(lane).visit(all.point(lane), &piece, index);
+            all.keep(lane, next);
         }
     }
 }
@@ -95,93 +113,27 @@ fn values(found: &CurvePoint) -> [f32; MAX_RESULTS] {
     let CurvePoint { t, arc_length, curve_length, x, y, distance, overshoot, stretch } = *found;
     [t, arc_length, curve_length, x, y, distance, overshoot, stretch]
 }
+/// Describes the foot in the first `n` lanes, each on a piece of its own: of the results those in `WANTED`.
+struct DescribeOwn<const WANTED: u8>;
 
-/// Distances to the winners are at most these, in each lane.
-struct Reaches([f32; LANES]);
+impl<const WANTED: u8> Kernel for DescribeOwn<WANTED> {
+    type Args<'a> = (&'a Searches, usize, &'a Described, &'a mut [[f32; LANES]; MAX_RESULTS]);
+    type Out = ();
 
-/// After so many points the leaf near one is looked for in the tree again, not beside the one before: rays end.
-const NEIGHBOURS: usize = 16;
-
-impl Reaches {
-    /// From the leaf that each point is likely to be near: that of its neighbour, or not far along the curve from there.
-    fn new(searches: &Searches, n: usize, nodes: &[Node]) -> Self {
-        let mut reaches = Self([f32::MAX; LANES]);
-        let mut leaf = 0;
+    #[inline(always)]
+    fn run((searches, n, own, found): Self::Args<'_>) {
         for lane in 0..n.min(LANES) {
-            let p = searches.point(lane);
-            leaf = if lane % NEIGHBOURS == 0 {
-                nodes::likely_leaf(p, nodes)
-            } else {
-                nodes::nearer_leaf(p, nodes, leaf)
-            };
-            reaches.0[lane] = nodes::reach_into(p, &nodes[leaf].capsule);
-        }
-        reaches
-    }
-}
-
-kernel! {
-    /// Lowers them to what has been found.
-    fn Lower<'a>((reaches, searches, n): (&'a mut Reaches, &'a Searches, usize)) {
-        for lane in 0..n.min(LANES) {
-            let found = nodes::reach_of(searches.dist_sq[lane]);
-            reaches.0[lane] = if found < reaches.0[lane] { found } else { reaches.0[lane] };
+            let values = values(&curve::describe(searches.point(lane), &own.piece(lane), searches.t[lane]));
+            for (result, (found, value)) in found.iter_mut().zip(values).enumerate() {
+                if WANTED >> result & 1 == 1 {
+                    found[lane] = value;
+                }
+            }
         }
     }
 }
 
-kernel! {
-    /// In which lanes the winner may be in a capsule, and in how many: 0 or 1 each.
-    fn Reach<'a>(
-        (reaches, searches, n, node, near): (&'a Reaches, &'a Searches, usize, &'a Node, &'a mut [u32; LANES])
-    ) -> usize {
-        for (lane, near) in near.iter_mut().enumerate().take(n.min(LANES)) {
-            *near = u32::from(nodes::may_hold(searches.point(lane), &node.capsule, reaches.0[lane]));
-        }
-        near.iter().sum::<u32>() as usize
-    }
-}
-
-impl Searches {
-    /// Visits the pieces of a leaf in the lanes that want it, side by side so that loops are as short as
-    /// they are few.
-    fn visit_leaf(
-        &mut self,
-        isa: Isa,
-        n: usize,
-        near: &[u32; LANES],
-        few: &mut Self,
-        pieces: &[Piece],
-        first: u32,
-    ) {
-        let mut lanes = [0; LANES];
-        let mut count = 0;
-        for lane in (0..n.min(LANES)).filter(|&lane| near[lane] != 0) {
-            few.copy(count, self, lane);
-            lanes[count] = lane;
-            count += 1;
-        }
-        for (index, piece) in (first..).zip(pieces) {
-            isa.run::<Visit>((few, count, *piece, index));
-        }
-        for (at, &lane) in lanes[..count].iter().enumerate() {
-            self.copy(lane, few, at);
-        }
-    }
-
-    /// Takes over a lane of others.
-    fn copy(&mut self, to: usize, from: &Self, lane: usize) {
-        for (to_axis, from_axis) in self.point.iter_mut().zip(&from.point) {
-            to_axis[to] = from_axis[lane];
-        }
-        self.dist_sq[to] = from.dist_sq[lane];
-        self.t[to] = from.t[lane];
-        self.piece[to] = from.piece[lane];
-        self.left_at_last[to] = from.left_at_last[lane];
-    }
-}
-
-/// [`nodes::search`] in each lane: a capsule is entered if some lane wants it, but its pieces are visited in those lanes only.
+/// [`nodes::search`](crate::math::curve::nodes::search) in each lane.
 fn search(isa: Isa, x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> Searches {
     let n = x[0].len().min(LANES);
     let mut searches = Searches::new(x);
@@ -192,26 +144,11 @@ fn search(isa: Isa, x: &Operands<'_>, (pieces, nodes): (&[Piece], &[Node])) -> S
         }
         return searches;
     }
-    // Pass over capsules that are farther than a foot.
-    let mut reaches = Reaches::new(&searches, n, nodes);
-    let (mut few, mut near, mut at) = (Searches::new(x), [0; LANES], 0);
-    while at < nodes.len() {
-        let node = &nodes[at];
-        if isa.run::<Reach>((&reaches, &searches, n, node, &mut near)) == 0 {
-            at = node.skip as usize;
-            continue;
-        }
-        if node.skip as usize == at + 1 {
-            let leaf = &pieces[node.first as usize..node.end as usize];
-            searches.visit_leaf(isa, n, &near, &mut few, leaf, node.first);
-            isa.run::<Lower>((&mut reaches, &searches, n));
-        }
-        at += 1;
-    }
+    tree::search(isa, &mut searches, n, pieces, nodes);
     searches
 }
 
-/// The pieces that won in some lane, unless there are so many that each lane is better described by itself.
+/// The pieces that won in some lane, unless there are so many that each lane is better given one of its own.
 fn winners(searches: &Searches, n: usize) -> Option<([u32; MOST_WINNERS], usize)> {
     let (mut all, mut count) = ([0; MOST_WINNERS], 0);
     for &piece in &searches.piece[..n] {
@@ -237,8 +174,11 @@ pub(super) fn closest(
     let (n, pieces) = (x[0].len().min(LANES), parts.0);
     let searches = search(isa, x, parts);
     // Describe the foot on the winner.
-    if let Some((all, count)) = winners(&searches, n).filter(|_| !pieces.is_empty()) {
-        let mut found = [[0.0; LANES]; MAX_RESULTS];
+    let mut found = [[0.0; LANES]; MAX_RESULTS];
+    if pieces.is_empty() {
+        let nowhere = values(&curve::closest([0.0; 3], &[], &[]));
+        found.iter_mut().zip(nowhere).for_each(|(found, value)| found.fill(value));
+    } else if let Some((all, count)) = winners(&searches, n) {
         for &index in &all[..count] {
             let args = (&searches, n, pieces[index as usize], index, &mut found);
             if wanted & !WALL == 0 {
@@ -249,19 +189,20 @@ pub(super) fn closest(
                 isa.run::<Describe<{ u8::MAX }>>(args);
             }
         }
-        for (out, found) in out.iter_mut().zip(&found) {
-            out.0[..n].copy_from_slice(&found[..n]);
+    } else {
+        let mut own = Described::new();
+        (0..n).for_each(|lane| own.set(lane, pieces, searches.piece[lane]));
+        let args = (&searches, n, &own, &mut found);
+        if wanted & !WALL == 0 {
+            isa.run::<DescribeOwn<WALL>>(args);
+        } else if wanted & !WITHOUT_LENGTH == 0 {
+            isa.run::<DescribeOwn<WITHOUT_LENGTH>>(args);
+        } else {
+            isa.run::<DescribeOwn<{ u8::MAX }>>(args);
         }
-        return MAX_RESULTS;
     }
-    for lane in 0..n {
-        let found = match pieces.get(searches.piece[lane] as usize) {
-            Some(piece) => curve::describe(searches.point(lane), piece, searches.t[lane]),
-            None => curve::closest(searches.point(lane), &[], &[]),
-        };
-        for (out, value) in out.iter_mut().zip(values(&found)) {
-            out.0[lane] = value;
-        }
+    for (out, found) in out.iter_mut().zip(&found) {
+        out.0[..n].copy_from_slice(&found[..n]);
     }
     MAX_RESULTS
 }

@@ -122,12 +122,20 @@ struct Vol_in_Span {
     float entry;
     float leave;
 };
+struct Vol_in_Walker {
+    float t;
+    float before;
+    float free;
+    bool guessed;
+};
 struct Vol_in_Near {
     float distance_;
     float value;
     uint solid;
     float gap;
     float rest;
+    float entry;
+    float leave;
 };
 struct Vol_in_Bracket {
     vec2 outside;
@@ -281,6 +289,8 @@ const float VOL_IN_NO_DEPTH = 1e30;
 const float VOL_IN_MAX_SPREAD_TANGENT = 1.7320508;
 const uint VOL_IN_MAX_STEPS = 2000u;
 const uint VOL_IN_REFINEMENTS = 4u;
+const float VOL_IN_EAGERNESS = 1.95;
+const float VOL_IN_ROOM = 0.98;
 const int VOL_IN_MAX_NODES = 16384;
 const float VOL_IN_LAST_NODE = 4194304.0;
 const float VOL_IN_SHOWS_NORMALS = 2.0;
@@ -392,9 +402,9 @@ float vol_log2_(float x_3) {
 vec3 vol_quarter_turn(float x_4) {
     float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
     float _e3 = vol_round(u_1);
-    float t_40 = (u_1 - _e3);
-    float _e7 = vol_round((t_40 * 4.0));
-    float r = (t_40 - (_e7 * 0.25));
+    float t_38 = (u_1 - _e3);
+    float _e7 = vol_round((t_38 * 4.0));
+    float r = (t_38 - (_e7 * 0.25));
     float s = (r * r);
     float a3_1 = (-76.69787 + (s * 41.472946));
     float a2_ = (81.6052 + (s * a3_1));
@@ -784,8 +794,8 @@ vec3 vol_offset_at(vec3 p_9, uint word_5, vec3 b1_1, vec3 b2_1, float t_6) {
     vec3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
     float back = (1.0 - t_6);
     vec3 _e9 = vol_end_from_point(p_9, word_5);
-    vec3 before_10 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
-    return ((t_6 > 0.5) ? before_10 : _e6);
+    vec3 before_8 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
+    return ((t_6 > 0.5) ? before_8 : _e6);
 }
 
 float vol_rough_cube_root(float x_14) {
@@ -1585,10 +1595,10 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, vec3 lo_2, vec3 hi_2) {
             uint _e31 = axis_1;
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[_e31]) || (o > hi_2[_e34]));
-            float near_4 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
+            float near_6 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
             float end_18 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
             float _e50 = span_1.entry;
-            span_1.entry = max(_e50, near_4);
+            span_1.entry = max(_e50, near_6);
             float _e54 = span_1.leave;
             span_1.leave = min(_e54, end_18);
         }
@@ -1697,71 +1707,88 @@ float vol_in_shorten(uint solid_5, Vol_in_Ray ray_4, float t_15, float last_1, f
 }
 
 Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout float sides_2[1], float t_16, float before_1) {
-    Vol_in_Near near = Vol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0);
-    Vol_in_Near others = Vol_in_Near(0.0, 0.0, 0u, 0.0, 0.0);
+    Vol_in_Near near = Vol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0, 4000000.0, 4000000.0);
+    Vol_in_Near others = Vol_in_Near(0.0, 0.0, 0u, 0.0, 0.0, 0.0, 0.0);
     float farthest = -4000000.0;
     uint solid_6 = 0u;
-    Vol_in_Near _e12 = near;
-    others = _e12;
+    Vol_in_Near _e14 = near;
+    others = _e14;
     bool loop_init_8 = true;
     while(true) {
         if (!loop_init_8) {
-            uint _e93 = solid_6;
-            solid_6 = (_e93 + 1u);
+            uint _e117 = solid_6;
+            solid_6 = (_e117 + 1u);
         }
         loop_init_8 = false;
-        uint _e18 = solid_6;
-        if ((_e18 < VOL_IN_OBJECT_COUNT)) {
+        uint _e20 = solid_6;
+        if ((_e20 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e21 = solid_6;
-            bool _e22 = vol_in_joins_the_one_before(_e21);
             uint _e23 = solid_6;
-            float _e25 = sides_2[_e23];
-            bool joined_1 = (_e22 && (_e25 < 0.0));
+            bool _e24 = vol_in_joins_the_one_before(_e23);
+            uint _e25 = solid_6;
+            float _e27 = sides_2[_e25];
+            bool joined_1 = (_e24 && (_e27 < 0.0));
             if (!(joined_1)) {
-                Vol_in_Near _e30 = near;
-                others = _e30;
+                Vol_in_Near _e32 = near;
+                others = _e32;
                 farthest = -4000000.0;
             }
-            uint _e32 = solid_6;
-            Vol_in_Span span_2 = spans_1[_e32];
+            uint _e34 = solid_6;
+            Vol_in_Span span_2 = spans_1[_e34];
             bool some_1 = (span_2.entry <= span_2.leave);
             bool ahead_3 = (some_1 && (t_16 < span_2.entry));
-            float _e43 = near.gap;
             float _e45 = near.gap;
-            near.gap = (ahead_3 ? min(_e45, (span_2.entry - t_16)) : _e43);
+            float _e47 = near.gap;
+            near.gap = (ahead_3 ? min(_e47, (span_2.entry - t_16)) : _e45);
+            float _e54 = near.entry;
+            float _e56 = near.entry;
+            near.entry = (ahead_3 ? min(_e56, span_2.entry) : _e54);
             if (((some_1 && (t_16 >= span_2.entry)) && (t_16 <= span_2.leave))) {
-                float _e58 = near.rest;
-                near.rest = max(_e58, (span_2.leave - t_16));
-                uint _e62 = solid_6;
-                float _e64 = sides_2[_e62];
-                uint _e65 = solid_6;
-                vec3 _e66 = vol_in_ray_at(ray_5, t_16);
-                float _e67 = vol_in_object_distance(_e65, _e66);
-                float seen_3 = (_e64 * _e67);
-                uint _e69 = solid_6;
-                float _e71 = vol_in_shorten(_e69, ray_5, t_16, (t_16 - before_1), seen_3);
-                float _e73 = farthest;
-                if ((!(joined_1) || (seen_3 > _e73))) {
+                float _e68 = near.rest;
+                near.rest = max(_e68, (span_2.leave - t_16));
+                uint _e72 = solid_6;
+                uint _e73 = vol_in_object_word(_e72);
+                float _e76 = vol_frame_word((_e73 + 7u));
+                bool is_ball = (_e76 != VOL_IN_BY_STEEPNESS);
+                float _e81 = near.leave;
+                near.leave = min(_e81, (is_ball ? span_2.leave : 0.0));
+                uint _e86 = solid_6;
+                float _e88 = sides_2[_e86];
+                uint _e89 = solid_6;
+                vec3 _e90 = vol_in_ray_at(ray_5, t_16);
+                float _e91 = vol_in_object_distance(_e89, _e90);
+                float seen_3 = (_e88 * _e91);
+                uint _e93 = solid_6;
+                float _e95 = vol_in_shorten(_e93, ray_5, t_16, (t_16 - before_1), seen_3);
+                float _e97 = farthest;
+                if ((!(joined_1) || (seen_3 > _e97))) {
                     farthest = seen_3;
-                    float _e78 = others.value;
-                    near.value = min(_e78, seen_3);
-                    float _e81 = others.distance_;
-                    bool closer = (_e71 < _e81);
-                    float _e85 = others.distance_;
-                    near.distance_ = (closer ? _e71 : _e85);
-                    uint _e89 = others.solid;
-                    uint _e90 = solid_6;
-                    near.solid = (closer ? _e90 : _e89);
+                    float _e102 = others.value;
+                    near.value = min(_e102, seen_3);
+                    float _e105 = others.distance_;
+                    bool closer = (_e95 < _e105);
+                    float _e109 = others.distance_;
+                    near.distance_ = (closer ? _e95 : _e109);
+                    uint _e113 = others.solid;
+                    uint _e114 = solid_6;
+                    near.solid = (closer ? _e114 : _e113);
                 }
             }
         }
     }
-    Vol_in_Near _e95 = near;
-    return _e95;
+    Vol_in_Near _e119 = near;
+    return _e119;
+}
+
+bool vol_in_is_past(Vol_in_Near near_1, Vol_in_Walker walker) {
+    return (walker.guessed && ((walker.free + near_1.distance_) < (walker.t - walker.before)));
+}
+
+Vol_in_Walker vol_in_back(Vol_in_Walker walker_1) {
+    return Vol_in_Walker((walker_1.before + walker_1.free), walker_1.before, walker_1.free, false);
 }
 
 float vol_in_footprint() {
@@ -1778,12 +1805,30 @@ float vol_in_tolerance(float t_17) {
     return max(pixel_3, (4.7683716e-7 * (_e6 + t_17)));
 }
 
-float vol_in_advance(Vol_in_Near near_1, uint step_, float least) {
-    float free = min(near_1.distance_, near_1.gap);
-    bool stuck = (step_ > 1000u);
-    float left = float(((VOL_IN_MAX_STEPS - step_) + 1u));
-    float even = (stuck ? min((near_1.rest / left), near_1.gap) : 0.0);
+bool vol_in_is_stuck(uint step_) {
+    return (step_ > 1000u);
+}
+
+float vol_in_advance(Vol_in_Near near_2, uint step_1, float least) {
+    float free = min(near_2.distance_, near_2.gap);
+    float left = float(((VOL_IN_MAX_STEPS - step_1) + 1u));
+    bool _e15 = vol_in_is_stuck(step_1);
+    float even = (_e15 ? min((near_2.rest / left), near_2.gap) : 0.0);
     return max(max(free, least), even);
+}
+
+Vol_in_Walker vol_in_onward(Vol_in_Near near_3, Vol_in_Walker walker_2, uint step_2, float least_1) {
+    float _e4 = vol_in_advance(near_3, step_2, least_1);
+    float last_6 = (walker_2.t - walker_2.before);
+    bool is_first = (last_6 <= 0.0);
+    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_6)), 0.0);
+    float touching = ((VOL_IN_EAGERNESS * near_3.distance_) / (1.0 + fall));
+    float guess = min(min(touching, (VOL_IN_ROOM * near_3.gap)), (VOL_IN_ROOM * (near_3.leave - walker_2.t)));
+    float place_9 = (walker_2.t + guess);
+    bool is_inside = ((place_9 < near_3.entry) && (place_9 <= near_3.leave));
+    bool _e45 = vol_in_is_stuck(step_2);
+    bool guessed = ((((guess > _e4) && is_inside) && !(is_first)) && !(_e45));
+    return Vol_in_Walker((guessed ? place_9 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
 }
 
 float vol_in_stride(float t_18) {
@@ -1795,8 +1840,8 @@ float vol_in_stride(float t_18) {
 
 float vol_in_probe(Vol_in_Bracket bracket) {
     bool is_proper = ((bracket.outside.y >= 0.0) && (bracket.inside.y < 0.0));
-    float fall = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
-    float part_3 = (bracket.outside.y / fall);
+    float fall_1 = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
+    float part_3 = (bracket.outside.y / fall_1);
     float between_4 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
     return (is_proper ? between_4 : bracket.inside.x);
 }
@@ -1879,10 +1924,10 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, flo
             float _e17 = vol_in_probe(_e16);
             uint _e18 = round_1;
             uint _e22 = round_1;
-            float place_9 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
-            vec3 _e26 = vol_in_ray_at(ray_8, place_9);
+            float place_10 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            vec3 _e26 = vol_in_ray_at(ray_8, place_10);
             float _e27 = vol_in_object_distance(solid_9, _e26);
-            vec2 found_3 = vec2(place_9, (side_1 * _e27));
+            vec2 found_3 = vec2(place_10, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
                 bracket_2.outside = found_3;
@@ -1912,8 +1957,7 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, flo
 Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9) {
     float sides_3[1] = float[1](0.0);
     Vol_in_Span spans_2[1] = Vol_in_Span[1](Vol_in_Span(0.0, 0.0));
-    float t_23 = 0.0;
-    float before_3 = 0.0;
+    Vol_in_Walker walker_3 = Vol_in_Walker(0.0, 0.0, 0.0, false);
     bool hit = false;
     uint solid_10 = 0u;
     uint count_1 = 1u;
@@ -1922,48 +1966,53 @@ Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9) {
     bool loop_init_11 = true;
     while(true) {
         if (!loop_init_11) {
-            uint _e41 = count_1;
-            count_1 = (_e41 + 1u);
+            uint _e50 = count_1;
+            count_1 = (_e50 + 1u);
         }
         loop_init_11 = false;
-        uint _e13 = count_1;
-        if ((_e13 <= VOL_IN_MAX_STEPS)) {
+        uint _e15 = count_1;
+        if ((_e15 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e16 = t_23;
-            float _e17 = before_3;
-            Vol_in_Near _e18 = vol_in_nearest(ray_9, spans_2, sides_3, _e16, _e17);
-            float _e20 = t_23;
-            float _e21 = vol_in_tolerance(_e20);
-            uint _e22 = count_1;
-            hit = (_e18.value < ((_e22 == VOL_IN_MAX_STEPS) ? _e21 : 0.0));
-            solid_10 = _e18.solid;
-            float _e29 = t_23;
-            uint _e30 = count_1;
-            float _e31 = t_23;
-            float _e32 = vol_in_stride(_e31);
-            float _e33 = vol_in_advance(_e18, _e30, _e32);
-            float next_2 = (_e29 + _e33);
-            bool _e35 = hit;
-            if ((_e35 || (next_2 >= VOL_IN_FAR))) {
+            float _e19 = walker_3.t;
+            float _e21 = walker_3.before;
+            Vol_in_Near _e22 = vol_in_nearest(ray_9, spans_2, sides_3, _e19, _e21);
+            Vol_in_Walker _e23 = walker_3;
+            bool _e24 = vol_in_is_past(_e22, _e23);
+            if (_e24) {
+                Vol_in_Walker _e25 = walker_3;
+                Vol_in_Walker _e26 = vol_in_back(_e25);
+                walker_3 = _e26;
+                continue;
+            }
+            float _e29 = walker_3.t;
+            float _e30 = vol_in_tolerance(_e29);
+            uint _e31 = count_1;
+            hit = (_e22.value < ((_e31 == VOL_IN_MAX_STEPS) ? _e30 : 0.0));
+            solid_10 = _e22.solid;
+            Vol_in_Walker _e38 = walker_3;
+            uint _e39 = count_1;
+            float _e41 = walker_3.t;
+            float _e42 = vol_in_stride(_e41);
+            Vol_in_Walker _e43 = vol_in_onward(_e22, _e38, _e39, _e42);
+            bool _e44 = hit;
+            if ((_e44 || (_e43.t >= VOL_IN_FAR))) {
                 break;
             }
-            float _e39 = t_23;
-            before_3 = _e39;
-            t_23 = next_2;
+            walker_3 = _e43;
         }
     }
-    bool _e43 = hit;
-    if (_e43) {
-        uint _e44 = solid_10;
-        float _e45 = before_3;
-        float _e46 = t_23;
-        uint _e47 = solid_10;
-        float _e49 = sides_3[_e47];
-        Vol_in_Contact _e50 = vol_in_refine(ray_9, _e44, _e45, _e46, _e49);
-        return _e50;
+    bool _e52 = hit;
+    if (_e52) {
+        uint _e53 = solid_10;
+        float _e55 = walker_3.before;
+        float _e57 = walker_3.t;
+        uint _e58 = solid_10;
+        float _e60 = sides_3[_e58];
+        Vol_in_Contact _e61 = vol_in_refine(ray_9, _e53, _e55, _e57, _e60);
+        return _e61;
     }
     return Vol_in_Contact(false, 0u, 4000000.0, vec3(0.0), vec3(0.0), 0.0);
 }
@@ -1998,10 +2047,10 @@ Vol_in_Arriving vol_in_arriving(uint light, vec3 point_3) {
     return Vol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_12), irradiance, shadows, slope_11, grid_4, style);
 }
 
-float vol_in_shadow_bias(float t_24) {
+float vol_in_shadow_bias(float t_23) {
     float _e1 = vol_in_footprint();
-    float pixel_5 = ((0.1 * _e1) * t_24);
-    float _e5 = vol_in_rounding(t_24);
+    float pixel_5 = ((0.1 * _e1) * t_23);
+    float _e5 = vol_in_rounding(t_23);
     return (pixel_5 + _e5);
 }
 
@@ -2061,8 +2110,8 @@ void vol_in_cone_spans(Vol_in_Ray ray_11, float distance_, float slope_1, inout 
     return;
 }
 
-Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_25) {
-    Vol_in_Around near_2 = Vol_in_Around(4000000.0, 4000000.0, 4000000.0);
+Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_24) {
+    Vol_in_Around near_4 = Vol_in_Around(4000000.0, 4000000.0, 4000000.0);
     uint solid_12 = 0u;
     bool loop_init_13 = true;
     while(true) {
@@ -2080,33 +2129,33 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
             uint _e13 = solid_12;
             Vol_in_Span span_3 = spans_4[_e13];
             bool some_2 = (span_3.entry <= span_3.leave);
-            bool before_11 = (some_2 && (t_25 < span_3.entry));
-            float _e24 = near_2.gap;
-            float _e26 = near_2.gap;
-            near_2.gap = (before_11 ? min(_e26, (span_3.entry - t_25)) : _e24);
-            if (((some_2 && (t_25 >= span_3.entry)) && (t_25 <= span_3.leave))) {
+            bool before_9 = (some_2 && (t_24 < span_3.entry));
+            float _e24 = near_4.gap;
+            float _e26 = near_4.gap;
+            near_4.gap = (before_9 ? min(_e26, (span_3.entry - t_24)) : _e24);
+            if (((some_2 && (t_24 >= span_3.entry)) && (t_24 <= span_3.leave))) {
                 uint _e37 = solid_12;
-                vec3 _e38 = vol_in_ray_at(ray_12, t_25);
+                vec3 _e38 = vol_in_ray_at(ray_12, t_24);
                 float _e39 = vol_in_object_distance(_e37, _e38);
                 uint _e40 = solid_12;
-                float _e42 = vol_in_shorten(_e40, ray_12, t_25, 0.0, _e39);
+                float _e42 = vol_in_shorten(_e40, ray_12, t_24, 0.0, _e39);
                 uint _e43 = solid_12;
                 uint _e44 = vol_in_object_word(_e43);
                 float _e47 = vol_frame_word((_e44 + 7u));
                 bool own_units = (_e47 == VOL_IN_BY_STEEPNESS);
-                float _e52 = near_2.distance_;
-                near_2.distance_ = min(_e52, (own_units ? _e42 : _e39));
-                float _e57 = near_2.safe;
-                near_2.safe = min(_e57, _e42);
+                float _e52 = near_4.distance_;
+                near_4.distance_ = min(_e52, (own_units ? _e42 : _e39));
+                float _e57 = near_4.safe;
+                near_4.safe = min(_e57, _e42);
             }
         }
     }
-    Vol_in_Around _e62 = near_2;
+    Vol_in_Around _e62 = near_4;
     return _e62;
 }
 
-bool vol_in_enters(float distance_1, float t_26, float least_1) {
-    float start_2 = ((8.0 * least_1) - t_26);
+bool vol_in_enters(float distance_1, float t_25, float least_2) {
+    float start_2 = ((8.0 * least_2) - t_25);
     return (distance_1 < -(max(start_2, 0.0)));
 }
 
@@ -2116,23 +2165,23 @@ float vol_in_least(vec2 a_6, vec2 b_6, vec2 c_3) {
     if (!((in_order && lowest_2))) {
         return c_3.y;
     }
-    float fall_1 = ((b_6.y - a_6.y) / (b_6.x - a_6.x));
+    float fall_2 = ((b_6.y - a_6.y) / (b_6.x - a_6.x));
     float rise_2 = ((c_3.y - b_6.y) / (c_3.x - b_6.x));
-    float bend = ((rise_2 - fall_1) / (c_3.x - a_6.x));
+    float bend = ((rise_2 - fall_2) / (c_3.x - a_6.x));
     if ((bend <= 0.0)) {
         return b_6.y;
     }
-    float place_10 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_1 / bend)));
-    float value_6 = (a_6.y + ((place_10 - a_6.x) * (fall_1 + (bend * (place_10 - b_6.x)))));
+    float place_11 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
+    float value_6 = (a_6.y + ((place_11 - a_6.x) * (fall_2 + (bend * (place_11 - b_6.x)))));
     return min(max(value_6, (0.75 * b_6.y)), b_6.y);
 }
 
-float vol_in_cone_step(Vol_in_Around near_3, float least_step, float slope_2, float t_27) {
+float vol_in_cone_step(Vol_in_Around near_5, float least_step, float slope_2, float t_26) {
     float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_2));
     float sine = sqrt(_e6);
-    float free_1 = ((near_3.safe - (sine * t_27)) / (1.0 + sine));
-    float shortest = max(least_step, ((0.002 * slope_2) * t_27));
-    return max(min(max(free_1, (0.5 * near_3.safe)), near_3.gap), shortest);
+    float free_1 = ((near_5.safe - (sine * t_26)) / (1.0 + sine));
+    float shortest = max(least_step, ((0.002 * slope_2) * t_26));
+    return max(min(max(free_1, (0.5 * near_5.safe)), near_5.gap), shortest);
 }
 
 float vol_in_clearance(float lowest, float slope_3) {
@@ -2143,7 +2192,7 @@ float vol_in_clearance(float lowest, float slope_3) {
 float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float slope_4) {
     float lowest_1 = 0.0;
     Vol_in_Span spans_5[1] = Vol_in_Span[1](Vol_in_Span(0.0, 0.0));
-    float t_28 = 0.0;
+    float t_27 = 0.0;
     vec2 older = vec2(0.0);
     vec2 newer = vec2(0.0);
     uint count_2 = 0u;
@@ -2164,18 +2213,18 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             break;
         }
         {
-            float _e24 = t_28;
+            float _e24 = t_27;
             Vol_in_Around _e25 = vol_in_around(ray_13, spans_5, _e24);
-            float _e27 = t_28;
+            float _e27 = t_27;
             bool _e28 = vol_in_enters(_e25.distance_, _e27, least_step_1);
             if (_e28) {
                 lowest_1 = 0.0;
                 break;
             }
-            float _e30 = t_28;
-            float _e38 = t_28;
+            float _e30 = t_27;
+            float _e38 = t_27;
             bool counts = (((_e30 > 0.0) && (_e25.distance_ >= 0.0)) && (_e25.distance_ < (end_19 - _e38)));
-            float _e42 = t_28;
+            float _e42 = t_27;
             float divisor_2 = (counts ? _e42 : 1.0);
             float sine_1 = min((_e25.distance_ / divisor_2), 1.0);
             vec2 sample_1 = vec2((1.0 / divisor_2), (sine_1 * sine_1));
@@ -2189,11 +2238,11 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             vec2 _e64 = newer;
             older = (counts ? _e64 : vec2(0.0));
             newer = (counts ? sample_1 : vec2(0.0));
-            float _e69 = t_28;
-            float _e70 = t_28;
+            float _e69 = t_27;
+            float _e70 = t_27;
             float _e71 = vol_in_cone_step(_e25, least_step_1, slope_4, _e70);
-            t_28 = (_e69 + _e71);
-            float _e73 = t_28;
+            t_27 = (_e69 + _e71);
+            float _e73 = t_27;
             if ((_e73 >= end_19)) {
                 break;
             }
@@ -2364,11 +2413,10 @@ void vol_in_no_sides(inout float sides_4[1]) {
     return;
 }
 
-bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
+bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3) {
     float sides_5[1] = float[1](0.0);
     Vol_in_Span spans_6[1] = Vol_in_Span[1](Vol_in_Span(0.0, 0.0));
-    float t_29 = 0.0;
-    float before_4 = 0.0;
+    Vol_in_Walker walker_4 = Vol_in_Walker(0.0, 0.0, 0.0, false);
     bool inside_1 = false;
     uint count_3 = 1u;
     vol_in_no_sides(sides_5);
@@ -2377,37 +2425,43 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2) {
     bool loop_init_20 = true;
     while(true) {
         if (!loop_init_20) {
-            uint _e34 = count_3;
-            count_3 = (_e34 + 1u);
+            uint _e42 = count_3;
+            count_3 = (_e42 + 1u);
         }
         loop_init_20 = false;
-        uint _e15 = count_3;
-        if ((_e15 <= VOL_IN_MAX_STEPS)) {
+        uint _e17 = count_3;
+        if ((_e17 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e18 = t_29;
-            float _e19 = before_4;
-            Vol_in_Near _e20 = vol_in_nearest(ray_15, spans_6, sides_5, _e18, _e19);
-            float _e22 = t_29;
-            bool _e23 = vol_in_enters(_e20.distance_, _e22, least_2);
-            inside_1 = _e23;
-            float _e24 = t_29;
-            before_4 = _e24;
-            float _e25 = t_29;
-            uint _e26 = count_3;
-            float _e27 = vol_in_advance(_e20, _e26, least_2);
-            t_29 = (_e25 + _e27);
-            bool _e29 = inside_1;
-            float _e30 = t_29;
-            if ((_e29 || (_e30 >= end_21))) {
+            float _e21 = walker_4.t;
+            float _e23 = walker_4.before;
+            Vol_in_Near _e24 = vol_in_nearest(ray_15, spans_6, sides_5, _e21, _e23);
+            Vol_in_Walker _e25 = walker_4;
+            bool _e26 = vol_in_is_past(_e24, _e25);
+            if (_e26) {
+                Vol_in_Walker _e27 = walker_4;
+                Vol_in_Walker _e28 = vol_in_back(_e27);
+                walker_4 = _e28;
+                continue;
+            }
+            float _e31 = walker_4.t;
+            bool _e32 = vol_in_enters(_e24.distance_, _e31, least_3);
+            inside_1 = _e32;
+            Vol_in_Walker _e33 = walker_4;
+            uint _e34 = count_3;
+            Vol_in_Walker _e35 = vol_in_onward(_e24, _e33, _e34, least_3);
+            walker_4 = _e35;
+            bool _e36 = inside_1;
+            float _e38 = walker_4.t;
+            if ((_e36 || (_e38 >= end_21))) {
                 break;
             }
         }
     }
-    bool _e36 = inside_1;
-    return _e36;
+    bool _e44 = inside_1;
+    return _e44;
 }
 
 float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
@@ -2417,10 +2471,10 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
 
 Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words, bool spline) {
     float index_22 = min(floor(place_2), (last_2 - 1.0));
-    float t_41 = (place_2 - index_22);
-    vec4 local_12 = vec4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
-    float back_1 = (1.0 - t_41);
-    vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_41 * t_41) * (1.0 - (0.5 * t_41)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_41 * (t_41 * t_41))));
+    float t_39 = (place_2 - index_22);
+    vec4 local_12 = vec4(((((1.0 - (0.5 * t_39)) * t_39) - 0.5) * t_39), (((((1.5 * t_39) - 2.5) * t_39) * t_39) + 1.0), ((((2.0 - (1.5 * t_39)) * t_39) + 0.5) * t_39), ((((0.5 * t_39) - 0.5) * t_39) * t_39));
+    float back_1 = (1.0 - t_39);
+    vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
     vec4 weights_8 = (spline ? through : local_12);
     ivec4 around = (ivec4(int(index_22)) + ivec4(-1, 0, 1, 2));
     return Vol_in_Stencil((uvec4(min(max(around, ivec4(0)), ivec4(int(last_2)))) * words), weights_8);
@@ -2499,10 +2553,10 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     float divisor_3 = ((ahead_4 && !(distant_1)) ? _e29 : 1.0);
     float _e41 = vol_in_length3_(off);
     vec3 seen_4 = vec3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
-    vec3 last_6 = (_e13 - vec3(1.0));
-    vec3 place_11 = ((seen_4 - _e7) * _e10);
-    bool beside_1 = ((((place_11.x < 0.0) || (place_11.x > last_6.x)) || (place_11.y < 0.0)) || (place_11.y > last_6.y));
-    if (((!(ahead_4) || beside_1) || (place_11.z <= 0.0))) {
+    vec3 last_7 = (_e13 - vec3(1.0));
+    vec3 place_12 = ((seen_4 - _e7) * _e10);
+    bool beside_1 = ((((place_12.x < 0.0) || (place_12.x > last_7.x)) || (place_12.y < 0.0)) || (place_12.y > last_7.y));
+    if (((!(ahead_4) || beside_1) || (place_12.z <= 0.0))) {
         return vec3(0.0);
     }
     float _e74 = vol_frame_word((grid + 25u));
@@ -2510,9 +2564,9 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     uint column = (channels_1 * uint(_e13.z));
     float _e81 = vol_frame_word((grid + 27u));
     bool spline_1 = (_e81 != 0.0);
-    Vol_in_Stencil _e89 = vol_in_stencil(place_11.x, last_6.x, (column * uint(_e13.y)), spline_1);
-    Vol_in_Stencil _e92 = vol_in_stencil(place_11.y, last_6.y, column, spline_1);
-    Vol_in_Stencil _e97 = vol_in_stencil(min(place_11.z, last_6.z), last_6.z, channels_1, spline_1);
+    Vol_in_Stencil _e89 = vol_in_stencil(place_12.x, last_7.x, (column * uint(_e13.y)), spline_1);
+    Vol_in_Stencil _e92 = vol_in_stencil(place_12.y, last_7.y, column, spline_1);
+    Vol_in_Stencil _e97 = vol_in_stencil(min(place_12.z, last_7.z), last_7.z, channels_1, spline_1);
     float _e100 = vol_frame_word((grid + 26u));
     uint first_5 = uint(_e100);
     vec3 _e104 = vol_in_word3_((grid + 22u));
@@ -2557,22 +2611,22 @@ ivec2 vol_in_node_range(Vol_in_Ray ray_17, vec3 lo_3, vec3 hi_3, inout Vol_in_Co
     float _e19 = comb.offset;
     float first_6 = min(max(floor(((_e11.entry / step_size_4) - _e19)), 0.0), VOL_IN_LAST_NODE);
     float _e30 = comb.offset;
-    float last_7 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
-    return ((_e11.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_6), int(last_7)));
+    float last_8 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
+    return ((_e11.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_6), int(last_8)));
 }
 
-Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, ivec2 nodes) {
+Vol_in_Runs vol_in_add_run(Vol_in_Runs before_3, ivec2 nodes) {
     vec2 range = vec2(nodes);
-    bvec4 continued = bvec4(lessThanEqual(before_5.first, vec4((range.y + 2.0))).x && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).x, lessThanEqual(before_5.first, vec4((range.y + 2.0))).y && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).y, lessThanEqual(before_5.first, vec4((range.y + 2.0))).z && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).z, lessThanEqual(before_5.first, vec4((range.y + 2.0))).w && greaterThanEqual(before_5.last, vec4((range.x - 2.0))).w);
-    vec4 own_first = mix(vec4(8388608.0), before_5.first, continued);
-    vec4 own_last = mix(vec4(-1.0), before_5.last, continued);
+    bvec4 continued = bvec4(lessThanEqual(before_3.first, vec4((range.y + 2.0))).x && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).x, lessThanEqual(before_3.first, vec4((range.y + 2.0))).y && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).y, lessThanEqual(before_3.first, vec4((range.y + 2.0))).z && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).z, lessThanEqual(before_3.first, vec4((range.y + 2.0))).w && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).w);
+    vec4 own_first = mix(vec4(8388608.0), before_3.first, continued);
+    vec4 own_last = mix(vec4(-1.0), before_3.last, continued);
     float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    vec4 kept_first = mix(before_5.first, vec4(8388608.0), continued);
-    vec4 kept_last = mix(before_5.last, vec4(-1.0), continued);
+    float last_9 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    vec4 kept_first = mix(before_3.first, vec4(8388608.0), continued);
+    vec4 kept_last = mix(before_3.last, vec4(-1.0), continued);
     bvec4 free_2 = equal(kept_first, vec4(8388608.0));
-    bvec4 place_12 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
-    return Vol_in_Runs(mix(kept_first, min(kept_first, vec4(first_7)), place_12), mix(kept_last, max(kept_last, vec4(last_8)), place_12));
+    bvec4 place_13 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
+    return Vol_in_Runs(mix(kept_first, min(kept_first, vec4(first_7)), place_13), mix(kept_last, max(kept_last, vec4(last_9)), place_13));
 }
 
 Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1) {
@@ -2630,10 +2684,10 @@ Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb
 ivec2 vol_in_run_from(Vol_in_Runs runs_1, int node) {
     float earliest = float(node);
     vec4 first_8 = mix(vec4(8388608.0), max(runs_1.first, vec4(earliest)), greaterThanEqual(runs_1.last, vec4(earliest)));
-    float least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    vec4 last_9 = mix(vec4(earliest), runs_1.last, equal(first_8, vec4(least_3)));
-    int end_22 = int(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
-    return ivec2(int(least_3), ((least_3 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
+    float least_4 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
+    vec4 last_10 = mix(vec4(earliest), runs_1.last, equal(first_8, vec4(least_4)));
+    int end_22 = int(max(max(last_10.x, last_10.y), max(last_10.z, last_10.w)));
+    return ivec2(int(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
 }
 
 Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size) {
@@ -2679,14 +2733,14 @@ int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead) {
         first_1 = min(_e19, _e23);
     }
     int _e25 = first_1;
-    int next_3 = max(after, (_e25 - lead));
+    int next_2 = max(after, (_e25 - lead));
     {
         float _e33 = comb_3.before[0u];
-        comb_3.before[0u] = ((next_3 > after) ? VOL_IN_FAR : _e33);
+        comb_3.before[0u] = ((next_2 > after) ? VOL_IN_FAR : _e33);
         float _e41 = comb_3.own[0u];
-        comb_3.own[0u] = ((next_3 > after) ? VOL_IN_FAR : _e41);
+        comb_3.own[0u] = ((next_2 > after) ? VOL_IN_FAR : _e41);
     }
-    return next_3;
+    return next_2;
 }
 
 float vol_in_node_distance(int node_2, float step_size_1, float offset) {
@@ -2703,9 +2757,9 @@ float vol_in_panel_node(inout Vol_in_Comb comb_4, int node_3) {
 
 float vol_in_gap_probe(Vol_in_Gap gap, uint round_2) {
     float length_1 = (gap.stop.x - gap.start.x);
-    float least_4 = (VOL_IN_LEAST_SHARE * length_1);
-    float touching = ((gap.start.y + least_4) / ((gap.start.y + gap.stop.y) + (least_4 + least_4)));
-    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching : 0.5)));
+    float least_5 = (VOL_IN_LEAST_SHARE * length_1);
+    float touching_1 = ((gap.start.y + least_5) / ((gap.start.y + gap.stop.y) + (least_5 + least_5)));
+    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching_1 : 0.5)));
 }
 
 float vol_in_crossing_probe(Vol_in_Crossing crossing) {
@@ -2738,7 +2792,7 @@ Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, vec2 found_
     return Vol_in_Crossing(kept_1, found_2, 2u);
 }
 
-Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, vec2 t_30) {
+Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, vec2 t_28) {
     Vol_in_Between between = Vol_in_Between(4000000.0, vec2(0.0), 0u);
     Vol_in_Gap gap_3 = Vol_in_Gap(vec2(0.0), vec2(0.0));
     Vol_in_Crossing crossing_2 = Vol_in_Crossing(vec2(0.0), vec2(0.0), 0u);
@@ -2759,7 +2813,7 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
             break;
         }
         {
-            probe = t_30.y;
+            probe = t_28.y;
             uint _e38 = aim;
             if ((_e38 == VOL_IN_A_GAP)) {
                 Vol_in_Gap _e41 = gap_3;
@@ -2797,11 +2851,11 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
             if ((_e68 == VOL_IN_THE_NODE)) {
                 float _e72 = value_3;
                 between.next = _e72;
-                vec2 start_3 = vec2(t_30.x, own_5);
+                vec2 start_3 = vec2(t_28.x, own_5);
                 round_3 = 0u;
                 aim = VOL_IN_NO_MORE;
                 int _e78 = comb_5.first;
-                if (((node_4 >= _e78) && (t_30.x < t_30.y))) {
+                if (((node_4 >= _e78) && (t_28.x < t_28.y))) {
                     float _e86 = value_3;
                     if (((own_5 < 0.0) != (_e86 < 0.0))) {
                         crossing_2 = Vol_in_Crossing(((own_5 < 0.0) ? start_3 : found_5), ((own_5 < 0.0) ? found_5 : start_3), 0u);
@@ -2866,8 +2920,8 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
     return _e176;
 }
 
-vec2 vol_in_panel_stretch(float own, vec2 t_31, Vol_in_Between between_1) {
-    return mix(between_1.walls, t_31, bvec2((own < 0.0), (between_1.next < 0.0)));
+vec2 vol_in_panel_stretch(float own, vec2 t_29, Vol_in_Between between_1) {
+    return mix(between_1.walls, t_29, bvec2((own < 0.0), (between_1.next < 0.0)));
 }
 
 uvec2 vol_in_new_ends(float own_1, Vol_in_Between between_2) {
@@ -2876,17 +2930,17 @@ uvec2 vol_in_new_ends(float own_1, Vol_in_Between between_2) {
     return uvec2(first_10, (((between_2.next < 0.0) || has_walls) ? 2u : VOL_IN_STOP_END));
 }
 
-bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, vec2 t_32, float own_2, Vol_in_Between between_3) {
+bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, vec2 t_30, float own_2, Vol_in_Between between_3) {
     bool some_3 = (((own_2 < 0.0) || (between_3.next < 0.0)) || (between_3.count > 0u));
     int _e16 = comb_6.first;
-    return (((node_5 >= _e16) && (t_32.x < t_32.y)) && some_3);
+    return (((node_5 >= _e16) && (t_30.x < t_30.y)) && some_3);
 }
 
-bvec2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, vec2 t_33, float own_3, float next) {
+bvec2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, vec2 t_31, float own_3, float next) {
     float _e9 = comb_7.step_;
     float _e11 = comb_7.offset;
     float _e12 = vol_in_node_distance((node_6 + 1), _e9, _e11);
-    bool is_last = (t_33.y < _e12);
+    bool is_last = (t_31.y < _e12);
     return bvec2(((own_3 >= 0.0) || (node_6 == 0)), ((next >= 0.0) || is_last));
 }
 
@@ -2902,13 +2956,13 @@ vec2 vol_in_panel_masses(float step_size_2, float length_, vec2 ends_2, bvec2 op
     float missed = max(min(((0.083333336 * step_size_2) * (part_5 * rise_3)), most_1), -(most_1));
     vec2 given = (open.x ? vec2(0.0, missed) : vec2(missed, 0.0));
     vec2 plain = max(((half_1 * densities) + ((open.x == open.y) ? vec2(0.0) : given)), vec2(0.0));
-    float fall_2 = (changes ? (above_1 - below_1) : 1.0);
-    float mass = ((half_1 * (above_1 * (above_1 / fall_2))) + (length_ * (fall_2 * 0.083333336)));
+    float fall_3 = (changes ? (above_1 - below_1) : 1.0);
+    float mass = ((half_1 * (above_1 * (above_1 / fall_3))) + (length_ * (fall_3 * 0.083333336)));
     vec2 cut = ((ends_2.x > 0.0) ? vec2(mass, 0.0) : vec2(0.0, mass));
     return (changes ? cut : plain);
 }
 
-vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout vec4 before_6[1]) {
+vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout vec4 before_4[1]) {
     vec3 depth_1 = vec3(0.0);
     vec4 first_2 = vec4(0.0);
     vec4 last_3 = vec4(0.0);
@@ -2916,12 +2970,12 @@ vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7,
     float step_size_5 = comb_8.step_;
     float _e6 = vol_in_panel_node(comb_8, node_7);
     float _e9 = vol_in_panel_node(comb_8, (node_7 + 1));
-    vec2 t_42 = vec2(_e6, _e9);
+    vec2 t_40 = vec2(_e6, _e9);
     {
         float own_6 = comb_8.own[0u];
-        Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_42);
-        vec2 _e19 = vol_in_panel_stretch(own_6, t_42, _e18);
-        vec4 _e21 = before_6[0u];
+        Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_40);
+        vec2 _e19 = vol_in_panel_stretch(own_6, t_40, _e18);
+        vec4 _e21 = before_4[0u];
         first_2 = _e21;
         uvec2 _e26 = vol_in_new_ends(own_6, _e18);
         end_5 = _e26.x;
@@ -2949,10 +3003,10 @@ vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7,
             }
         }
         vec4 _e50 = last_3;
-        before_6[0u] = ((_e18.next < 0.0) ? _e50 : vec4(0.0));
-        bool _e55 = vol_in_has_panel(comb_8, node_7, t_42, own_6, _e18);
+        before_4[0u] = ((_e18.next < 0.0) ? _e50 : vec4(0.0));
+        bool _e55 = vol_in_has_panel(comb_8, node_7, t_40, own_6, _e18);
         if (_e55) {
-            bvec2 _e57 = vol_in_open_ends(comb_8, node_7, t_42, own_6, _e18.next);
+            bvec2 _e57 = vol_in_open_ends(comb_8, node_7, t_40, own_6, _e18.next);
             float _e62 = first_2.x;
             float _e64 = last_3.x;
             vec2 _e66 = vol_in_panel_masses(step_size_5, (_e19.y - _e19.x), vec2(_e62, _e64), _e57);
@@ -2968,7 +3022,7 @@ vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7,
 
 vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
     Vol_in_Comb comb_9 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    vec4 before_7[1] = vec4[1](vec4(0.0));
+    vec4 before_5[1] = vec4[1](vec4(0.0));
     vec3 depth_2 = vec3(0.0);
     int node_8 = 0;
     float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
@@ -2993,7 +3047,7 @@ vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
         {
             vec3 _e19 = depth_2;
             int _e20 = node_8;
-            vec3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_7);
+            vec3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_5);
             depth_2 = (_e19 + _e21);
             vec3 _e23 = depth_2;
             float _e24 = vol_in_smallest(_e23);
@@ -3006,15 +3060,15 @@ vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
     return _e30;
 }
 
-float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, ivec2 run, float t_34, int node_9, float end_7) {
+float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, ivec2 run, float t_32, int node_9, float end_7) {
     float region = VOL_IN_FAR;
     if (((node_9 >= (run.x - 1)) && (node_9 <= (run.y + 1)))) {
-        vec3 _e17 = vol_in_ray_at(ray_23, t_34);
+        vec3 _e17 = vol_in_ray_at(ray_23, t_32);
         float _e18 = vol_in_medium_region(medium_3, _e17);
         region = _e18;
     }
     float _e19 = region;
-    return max(_e19, max((t_34 - end_7), -(t_34)));
+    return max(_e19, max((t_32 - end_7), -(t_32)));
 }
 
 float vol_in_share(float own_4, float other_1, float step_size_3) {
@@ -3029,19 +3083,19 @@ bool vol_in_weigh(Vol_in_Ray ray_24, inout Vol_in_Comb comb_10, int node_10, ino
     float _e11 = comb_10.offset;
     float _e12 = vol_in_node_distance((node_10 + 1), step_size_6, _e11);
     {
-        float before_12 = comb_10.before[0u];
+        float before_10 = comb_10.before[0u];
         float own_7 = comb_10.own[0u];
         ivec2 _e22 = comb_10.runs[0u];
         float _e26 = comb_10.end;
         float _e27 = vol_in_wall(ray_24, 0u, _e22, _e12, (node_10 + 1), _e26);
-        float _e28 = vol_in_share(own_7, before_12, step_size_6);
+        float _e28 = vol_in_share(own_7, before_10, step_size_6);
         float _e29 = vol_in_share(own_7, _e27, step_size_6);
         float weight = (_e28 + _e29);
         int _e34 = comb_10.first;
-        bool is_inside = ((own_7 < 0.0) && (node_10 >= _e34));
-        weights[0u] = (is_inside ? weight : 0.0);
+        bool is_inside_1 = ((own_7 < 0.0) && (node_10 >= _e34));
+        weights[0u] = (is_inside_1 ? weight : 0.0);
         bool _e40 = any_inside;
-        any_inside = (_e40 || is_inside);
+        any_inside = (_e40 || is_inside_1);
         comb_10.before[0u] = own_7;
         comb_10.own[0u] = _e27;
     }
@@ -3331,7 +3385,7 @@ Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_31, float end_10) {
     return Vol_in_StyledRays(0.0);
 }
 
-void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, vec2 t_35, inout Vol_in_Panels panels) {
+void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, vec2 t_33, inout Vol_in_Panels panels) {
     Vol_in_PanelEnd start = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
     Vol_in_PanelEnd stop = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
     uint end_11 = 0u;
@@ -3340,8 +3394,8 @@ void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_1
     panels.some = false;
     {
         float own_8 = comb_12.own[0u];
-        Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_35);
-        vec2 _e15 = vol_in_panel_stretch(own_8, t_35, _e14);
+        Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_33);
+        vec2 _e15 = vol_in_panel_stretch(own_8, t_33, _e14);
         Vol_in_Interior nothing = Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
         Vol_in_PanelEnd _e26 = panels.starts[0u];
         start = _e26;
@@ -3374,12 +3428,12 @@ void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_1
                 }
             }
         }
-        bool _e65 = vol_in_has_panel(comb_12, node_12, t_35, own_8, _e14);
+        bool _e65 = vol_in_has_panel(comb_12, node_12, t_33, own_8, _e14);
         if (_e65) {
             float _e68 = start.interior.density;
             float _e71 = stop.interior.density;
             vec2 densities_1 = vec2(_e68, _e71);
-            bvec2 _e74 = vol_in_open_ends(comb_12, node_12, t_35, own_8, _e14.next);
+            bvec2 _e74 = vol_in_open_ends(comb_12, node_12, t_33, own_8, _e14.next);
             float _e76 = comb_12.step_;
             vec2 _e80 = vol_in_panel_masses(_e76, (_e15.y - _e15.x), densities_1, _e74);
             masses = _e80;
@@ -3453,11 +3507,11 @@ uint vol_in_next_dark_place(inout Vol_in_Panels panels_2, uint first_3) {
     return _e48;
 }
 
-float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_36) {
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_34) {
     return 1.0;
 }
 
-vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_37, inout vec3 scatter[1]) {
+vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_35, inout vec3 scatter[1]) {
     bool asked = false;
     float part_2 = 1.0;
     bool local_6 = false;
@@ -3471,7 +3525,7 @@ vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_
     }
     bool _e22 = asked;
     if ((_e22 && lamp_3.shadows)) {
-        vec3 _e25 = vol_in_ray_at(ray_34, t_37);
+        vec3 _e25 = vol_in_ray_at(ray_34, t_35);
         Vol_in_Ray _e27 = vol_in_new_ray(_e25, lamp_3.direction);
         if (VOL_IN_STYLES) {
             local_6 = (lamp_3.style != 0u);
@@ -3480,10 +3534,10 @@ vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_
         }
         bool _e37 = local_6;
         if (_e37) {
-            float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_37);
+            float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_35);
             part_2 = _e38;
         } else {
-            float _e40 = vol_in_shadow_bias(t_37);
+            float _e40 = vol_in_shadow_bias(t_35);
             float _e41 = vol_in_unblocked(_e27, lamp_3.distance_, _e40);
             part_2 = _e41;
         }
@@ -3524,11 +3578,11 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, vec3 seen_1, vec3 direction_3,
     }
 }
 
-void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
+void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
     uint light_5 = 0u;
     vec3 seen_2 = vec3(0.0);
     bool local_7 = false;
-    vec3 _e5 = vol_in_ray_at(ray_35, t_38);
+    vec3 _e5 = vol_in_ray_at(ray_35, t_36);
     uint _e6 = vol_in_light_count();
     bool loop_init_32 = true;
     while(true) {
@@ -3546,7 +3600,7 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays s
             uint _e11 = light_5;
             Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
             uint _e13 = light_5;
-            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_38, scatter_2);
+            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_36, scatter_2);
             seen_2 = _e14;
             if (VOL_IN_STYLES) {
                 local_7 = (_e12.style != 0u);
@@ -3619,9 +3673,9 @@ bool vol_in_light_ends(Vol_in_Ray ray_36, inout Vol_in_StyledRays styled_2, inou
     return _e58;
 }
 
-Vol_in_Glow vol_in_gather(Vol_in_Glow before_8, int node_13, Vol_in_Chunk chunk) {
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_6, int node_13, Vol_in_Chunk chunk) {
     Vol_in_Glow glow = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    glow = before_8;
+    glow = before_6;
     vec3 _e5 = vol_in_decay3_(chunk.depth);
     vec3 _e7 = glow.light;
     vec3 _e9 = glow.transmittance;
@@ -3704,9 +3758,9 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
             float _e21 = vol_in_panel_node(comb_13, _e20);
             int _e22 = node_14;
             float _e25 = vol_in_panel_node(comb_13, (_e22 + 1));
-            vec2 t_43 = vec2(_e21, _e25);
+            vec2 t_41 = vec2(_e21, _e25);
             int _e27 = node_14;
-            vol_in_find_panels(ray_37, comb_13, _e27, t_43, panels_5);
+            vol_in_find_panels(ray_37, comb_13, _e27, t_41, panels_5);
             lit_after_1 = false;
             bool _e31 = panels_5.some;
             if (_e31) {
@@ -3738,12 +3792,12 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
     return _e57;
 }
 
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_StyledRays styled_4, inout float weights_4[1]) {
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_37, inout Vol_in_StyledRays styled_4, inout float weights_4[1]) {
     vec3 depth_6 = vec3(0.0);
     vec3 scatter_4[1] = vec3[1](vec3(0.0));
     vec3 source_3[1] = vec3[1](vec3(0.0));
     vec3 sent_1 = vec3(0.0);
-    vec3 _e4 = vol_in_ray_at(ray_38, t_39);
+    vec3 _e4 = vol_in_ray_at(ray_38, t_37);
     {
         float weight_2 = weights_4[0u];
         scatter_4[0u] = vec3(0.0);
@@ -3758,7 +3812,7 @@ Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_Style
         }
     }
     if (VOL_IN_LIT_MEDIA) {
-        vol_in_light_place(ray_38, t_39, styled_4, scatter_4, source_3);
+        vol_in_light_place(ray_38, t_37, styled_4, scatter_4, source_3);
     }
     {
         vec3 _e41 = sent_1;
@@ -3863,10 +3917,10 @@ Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_41) {
 }
 
 vec2 vol_in_place_in_pixel(uint index_19) {
-    uint step_1 = ((index_19 + 1u) / 2u);
-    uint signed = (((index_19 % 2u) == 1u) ? step_1 : (0u - step_1));
-    uvec2 place_13 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
-    return (vec2(place_13) * 1.5258789e-5);
+    uint step_3 = ((index_19 + 1u) / 2u);
+    uint signed = (((index_19 % 2u) == 1u) ? step_3 : (0u - step_3));
+    uvec2 place_14 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
+    return (vec2(place_14) * 1.5258789e-5);
 }
 
 Vol_in_Ray vol_in_camera_ray(vec2 place_6) {
@@ -3886,8 +3940,8 @@ Vol_in_Ray vol_in_camera_ray(vec2 place_6) {
 }
 
 float vol_in_comb_shift(uvec2 pixel, uint index_20) {
-    uint place_14 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
-    return ((float(((place_14 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+    uint place_15 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_15 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
 }
 
 Vol_in_Ray vol_in_pixel_ray(uvec2 pixel_1, uint index_21, uint corner) {
@@ -3973,13 +4027,13 @@ bool vol_in_is_probed() {
     return _e12;
 }
 
-Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_9, uint last_4) {
+Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_7, uint last_4) {
     Vol_in_Mean mean_4 = Vol_in_Mean(0u, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
     uint corner_1 = VOL_IN_NO_CORNER;
     bool local_9 = false;
     bool local_10 = false;
     bool local_11 = false;
-    mean_4 = before_9;
+    mean_4 = before_7;
     while(true) {
         uint _e6 = corner_1;
         if (!((_e6 < VOL_IN_NO_CORNER))) {
@@ -4053,16 +4107,16 @@ vec4 vol_radiance(vec3 origin_1, vec3 direction_4) {
     float _e2 = vol_in_length3_(direction_4);
     Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / vec3(_e2)));
     Vol_in_Radiance _e6 = vol_in_radiance(_e5);
-    vec3 t_44 = _e6.transmittance;
-    float clear_3 = (((t_44.x + t_44.y) + t_44.z) * 0.33333334);
+    vec3 t_42 = _e6.transmittance;
+    float clear_3 = (((t_42.x + t_42.y) + t_42.z) * 0.33333334);
     return vec4(_e6.color, (1.0 - clear_3));
 }
 
 vec4 vol_pixel(vec2 place_7) {
     Vol_in_Ray _e1 = vol_in_camera_ray(place_7);
     Vol_in_Radiance _e2 = vol_in_radiance(_e1);
-    vec3 t_45 = _e2.transmittance;
-    float clear_4 = (((t_45.x + t_45.y) + t_45.z) * 0.33333334);
+    vec3 t_43 = _e2.transmittance;
+    float clear_4 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
     return vec4(_e2.color, (1.0 - clear_4));
 }
 

@@ -172,12 +172,21 @@ struct Vol_in_Span {
     float leave;
 };
 
+struct Vol_in_Walker {
+    float t;
+    float before;
+    float free;
+    bool guessed;
+};
+
 struct Vol_in_Near {
     float distance_;
     float value;
     uint solid;
     float gap;
     float rest;
+    float entry;
+    float leave;
 };
 
 struct Vol_in_Bracket {
@@ -412,6 +421,8 @@ static const float VOL_IN_NO_DEPTH = 1e30;
 static const float VOL_IN_MAX_SPREAD_TANGENT = 1.7320508;
 static const uint VOL_IN_MAX_STEPS = 2000u;
 static const uint VOL_IN_REFINEMENTS = 4u;
+static const float VOL_IN_EAGERNESS = 1.95;
+static const float VOL_IN_ROOM = 0.98;
 static const int VOL_IN_MAX_NODES = int(16384);
 static const float VOL_IN_LAST_NODE = 4194304.0;
 static const float VOL_IN_SHOWS_NORMALS = 2.0;
@@ -536,9 +547,9 @@ float3 vol_quarter_turn(float x_4)
 {
     float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
     const float _e3 = vol_round(u_1);
-    float t_40 = (u_1 - _e3);
-    const float _e7 = vol_round((t_40 * 4.0));
-    float r = (t_40 - (_e7 * 0.25));
+    float t_38 = (u_1 - _e3);
+    const float _e7 = vol_round((t_38 * 4.0));
+    float r = (t_38 - (_e7 * 0.25));
     float s = (r * r);
     float a3_1 = (-76.69787 + (s * 41.472946));
     float a2_ = (81.6052 + (s * a3_1));
@@ -997,8 +1008,8 @@ float3 vol_offset_at(float3 p_9, uint word_5, float3 b1_1, float3 b2_1, float t_
     const float3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
     float back = (1.0 - t_6);
     const float3 _e9 = vol_end_from_point(p_9, word_5);
-    float3 before_10 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
-    return ((t_6 > 0.5) ? before_10 : _e6);
+    float3 before_8 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
+    return ((t_6 > 0.5) ? before_8 : _e6);
 }
 
 uint naga_div(uint lhs, uint rhs) {
@@ -2002,10 +2013,10 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, float3 lo_2, float3 hi_2)
             uint _e31 = axis_1;
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[min(uint(_e31), 2u)]) | (o > hi_2[min(uint(_e34), 2u)]));
-            float near_4 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
+            float near_6 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
             float end_18 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
             float _e50 = span_1.entry;
-            span_1.entry = max(_e50, near_4);
+            span_1.entry = max(_e50, near_6);
             float _e54 = span_1.leave;
             span_1.leave = min(_e54, end_18);
         }
@@ -2128,88 +2139,119 @@ float vol_in_shorten(uint solid_5, Vol_in_Ray ray_4, float t_15, float last_1, f
     return 0.0;
 }
 
-Vol_in_Near ConstructVol_in_Near(float arg0, float arg1, uint arg2, float arg3, float arg4) {
+Vol_in_Near ConstructVol_in_Near(float arg0, float arg1, uint arg2, float arg3, float arg4, float arg5, float arg6) {
     Vol_in_Near ret = (Vol_in_Near)0;
     ret.distance_ = arg0;
     ret.value = arg1;
     ret.solid = arg2;
     ret.gap = arg3;
     ret.rest = arg4;
+    ret.entry = arg5;
+    ret.leave = arg6;
     return ret;
 }
 
 Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout float sides_2[1], float t_16, float before_1)
 {
-    Vol_in_Near near = ConstructVol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0);
+    Vol_in_Near near = ConstructVol_in_Near(4000000.0, 4000000.0, 0u, 4000000.0, 0.0, 4000000.0, 4000000.0);
     Vol_in_Near others = (Vol_in_Near)0;
     float farthest = -4000000.0;
     uint solid_6 = 0u;
 
-    Vol_in_Near _e12 = near;
-    others = _e12;
+    Vol_in_Near _e14 = near;
+    others = _e14;
     uint2 loop_bound_8 = uint2(4294967295u, 4294967295u);
     bool loop_init_8 = true;
     while(true) {
         if (all(loop_bound_8 == uint2(0u, 0u))) { break; }
         loop_bound_8 -= uint2(loop_bound_8.y == 0u, 1u);
         if (!loop_init_8) {
-            uint _e93 = solid_6;
-            solid_6 = (_e93 + 1u);
+            uint _e117 = solid_6;
+            solid_6 = (_e117 + 1u);
         }
         loop_init_8 = false;
-        uint _e18 = solid_6;
-        if ((_e18 < VOL_IN_OBJECT_COUNT)) {
+        uint _e20 = solid_6;
+        if ((_e20 < VOL_IN_OBJECT_COUNT)) {
         } else {
             break;
         }
         {
-            uint _e21 = solid_6;
-            const bool _e22 = vol_in_joins_the_one_before(_e21);
             uint _e23 = solid_6;
-            float _e25 = sides_2[min(uint(_e23), 0u)];
-            bool joined_1 = (_e22 & (_e25 < 0.0));
+            const bool _e24 = vol_in_joins_the_one_before(_e23);
+            uint _e25 = solid_6;
+            float _e27 = sides_2[min(uint(_e25), 0u)];
+            bool joined_1 = (_e24 & (_e27 < 0.0));
             if (!(joined_1)) {
-                Vol_in_Near _e30 = near;
-                others = _e30;
+                Vol_in_Near _e32 = near;
+                others = _e32;
                 farthest = -4000000.0;
             }
-            uint _e32 = solid_6;
-            Vol_in_Span span_2 = spans_1[min(uint(_e32), 0u)];
+            uint _e34 = solid_6;
+            Vol_in_Span span_2 = spans_1[min(uint(_e34), 0u)];
             bool some_1 = (span_2.entry <= span_2.leave);
             bool ahead_3 = (some_1 & (t_16 < span_2.entry));
-            float _e43 = near.gap;
             float _e45 = near.gap;
-            near.gap = (ahead_3 ? min(_e45, (span_2.entry - t_16)) : _e43);
+            float _e47 = near.gap;
+            near.gap = (ahead_3 ? min(_e47, (span_2.entry - t_16)) : _e45);
+            float _e54 = near.entry;
+            float _e56 = near.entry;
+            near.entry = (ahead_3 ? min(_e56, span_2.entry) : _e54);
             if (((some_1 & (t_16 >= span_2.entry)) & (t_16 <= span_2.leave))) {
-                float _e58 = near.rest;
-                near.rest = max(_e58, (span_2.leave - t_16));
-                uint _e62 = solid_6;
-                float _e64 = sides_2[min(uint(_e62), 0u)];
-                uint _e65 = solid_6;
-                const float3 _e66 = vol_in_ray_at(ray_5, t_16);
-                const float _e67 = vol_in_object_distance(_e65, _e66);
-                float seen_3 = (_e64 * _e67);
-                uint _e69 = solid_6;
-                const float _e71 = vol_in_shorten(_e69, ray_5, t_16, (t_16 - before_1), seen_3);
-                float _e73 = farthest;
-                if ((!(joined_1) | (seen_3 > _e73))) {
+                float _e68 = near.rest;
+                near.rest = max(_e68, (span_2.leave - t_16));
+                uint _e72 = solid_6;
+                const uint _e73 = vol_in_object_word(_e72);
+                const float _e76 = vol_frame_word((_e73 + 7u));
+                bool is_ball = (_e76 != VOL_IN_BY_STEEPNESS);
+                float _e81 = near.leave;
+                near.leave = min(_e81, (is_ball ? span_2.leave : 0.0));
+                uint _e86 = solid_6;
+                float _e88 = sides_2[min(uint(_e86), 0u)];
+                uint _e89 = solid_6;
+                const float3 _e90 = vol_in_ray_at(ray_5, t_16);
+                const float _e91 = vol_in_object_distance(_e89, _e90);
+                float seen_3 = (_e88 * _e91);
+                uint _e93 = solid_6;
+                const float _e95 = vol_in_shorten(_e93, ray_5, t_16, (t_16 - before_1), seen_3);
+                float _e97 = farthest;
+                if ((!(joined_1) | (seen_3 > _e97))) {
                     farthest = seen_3;
-                    float _e78 = others.value;
-                    near.value = min(_e78, seen_3);
-                    float _e81 = others.distance_;
-                    bool closer = (_e71 < _e81);
-                    float _e85 = others.distance_;
-                    near.distance_ = (closer ? _e71 : _e85);
-                    uint _e89 = others.solid;
-                    uint _e90 = solid_6;
-                    near.solid = (closer ? _e90 : _e89);
+                    float _e102 = others.value;
+                    near.value = min(_e102, seen_3);
+                    float _e105 = others.distance_;
+                    bool closer = (_e95 < _e105);
+                    float _e109 = others.distance_;
+                    near.distance_ = (closer ? _e95 : _e109);
+                    uint _e113 = others.solid;
+                    uint _e114 = solid_6;
+                    near.solid = (closer ? _e114 : _e113);
                 }
             }
         }
     }
-    Vol_in_Near _e95 = near;
-    const Vol_in_Near vol_in_near = _e95;
+    Vol_in_Near _e119 = near;
+    const Vol_in_Near vol_in_near = _e119;
     return vol_in_near;
+}
+
+bool vol_in_is_past(Vol_in_Near near_1, Vol_in_Walker walker)
+{
+    return (walker.guessed & ((walker.free + near_1.distance_) < (walker.t - walker.before)));
+}
+
+Vol_in_Walker ConstructVol_in_Walker(float arg0, float arg1, float arg2, bool arg3) {
+    Vol_in_Walker ret = (Vol_in_Walker)0;
+    ret.t = arg0;
+    ret.before = arg1;
+    ret.free = arg2;
+    ret.guessed = arg3;
+    return ret;
+}
+
+Vol_in_Walker vol_in_back(Vol_in_Walker walker_1)
+{
+    const Vol_in_Walker vol_in_walker = ConstructVol_in_Walker((walker_1.before + walker_1.free), walker_1.before, walker_1.free, false);
+    return vol_in_walker;
 }
 
 float vol_in_footprint()
@@ -2228,13 +2270,34 @@ float vol_in_tolerance(float t_17)
     return max(pixel_3, (4.7683716e-7 * (_e6 + t_17)));
 }
 
-float vol_in_advance(Vol_in_Near near_1, uint step_, float least)
+bool vol_in_is_stuck(uint step_)
 {
-    float free = min(near_1.distance_, near_1.gap);
-    bool stuck = (step_ > 1000u);
-    float left = float(((VOL_IN_MAX_STEPS - step_) + 1u));
-    float even = (stuck ? min((near_1.rest / left), near_1.gap) : 0.0);
+    return (step_ > 1000u);
+}
+
+float vol_in_advance(Vol_in_Near near_2, uint step_1, float least)
+{
+    float free = min(near_2.distance_, near_2.gap);
+    float left = float(((VOL_IN_MAX_STEPS - step_1) + 1u));
+    const bool _e15 = vol_in_is_stuck(step_1);
+    float even = (_e15 ? min((near_2.rest / left), near_2.gap) : 0.0);
     return max(max(free, least), even);
+}
+
+Vol_in_Walker vol_in_onward(Vol_in_Near near_3, Vol_in_Walker walker_2, uint step_2, float least_1)
+{
+    const float _e4 = vol_in_advance(near_3, step_2, least_1);
+    float last_6 = (walker_2.t - walker_2.before);
+    bool is_first = (last_6 <= 0.0);
+    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_6)), 0.0);
+    float touching = ((VOL_IN_EAGERNESS * near_3.distance_) / (1.0 + fall));
+    float guess = min(min(touching, (VOL_IN_ROOM * near_3.gap)), (VOL_IN_ROOM * (near_3.leave - walker_2.t)));
+    float place_8 = (walker_2.t + guess);
+    bool is_inside = ((place_8 < near_3.entry) & (place_8 <= near_3.leave));
+    const bool _e45 = vol_in_is_stuck(step_2);
+    bool guessed = ((((guess > _e4) & is_inside) & !(is_first)) & !(_e45));
+    const Vol_in_Walker vol_in_walker_1 = ConstructVol_in_Walker((guessed ? place_8 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
+    return vol_in_walker_1;
 }
 
 float vol_in_stride(float t_18)
@@ -2248,8 +2311,8 @@ float vol_in_stride(float t_18)
 float vol_in_probe(Vol_in_Bracket bracket)
 {
     bool is_proper = ((bracket.outside.y >= 0.0) & (bracket.inside.y < 0.0));
-    float fall = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
-    float part_3 = (bracket.outside.y / fall);
+    float fall_1 = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
+    float part_3 = (bracket.outside.y / fall_1);
     float between_4 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
     return (is_proper ? between_4 : bracket.inside.x);
 }
@@ -2365,10 +2428,10 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, flo
             const float _e17 = vol_in_probe(_e16);
             uint _e18 = round_1;
             uint _e22 = round_1;
-            float place_8 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
-            const float3 _e26 = vol_in_ray_at(ray_8, place_8);
+            float place_9 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            const float3 _e26 = vol_in_ray_at(ray_8, place_9);
             const float _e27 = vol_in_object_distance(solid_9, _e26);
-            float2 found_3 = float2(place_8, (side_1 * _e27));
+            float2 found_3 = float2(place_9, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
                 bracket_2.outside = found_3;
@@ -2400,8 +2463,7 @@ Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9)
 {
     float sides_3[1] = (float[1])0;
     Vol_in_Span spans_2[1] = (Vol_in_Span[1])0;
-    float t_23 = 0.0;
-    float before_3 = 0.0;
+    Vol_in_Walker walker_3 = ConstructVol_in_Walker(0.0, 0.0, 0.0, false);
     bool hit = false;
     uint solid_10 = 0u;
     uint count_1 = 1u;
@@ -2414,48 +2476,53 @@ Vol_in_Contact vol_in_trace(Vol_in_Ray ray_9)
         if (all(loop_bound_11 == uint2(0u, 0u))) { break; }
         loop_bound_11 -= uint2(loop_bound_11.y == 0u, 1u);
         if (!loop_init_11) {
-            uint _e41 = count_1;
-            count_1 = (_e41 + 1u);
+            uint _e50 = count_1;
+            count_1 = (_e50 + 1u);
         }
         loop_init_11 = false;
-        uint _e13 = count_1;
-        if ((_e13 <= VOL_IN_MAX_STEPS)) {
+        uint _e15 = count_1;
+        if ((_e15 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e16 = t_23;
-            float _e17 = before_3;
-            const Vol_in_Near _e18 = vol_in_nearest(ray_9, spans_2, sides_3, _e16, _e17);
-            float _e20 = t_23;
-            const float _e21 = vol_in_tolerance(_e20);
-            uint _e22 = count_1;
-            hit = (_e18.value < ((_e22 == VOL_IN_MAX_STEPS) ? _e21 : 0.0));
-            solid_10 = _e18.solid;
-            float _e29 = t_23;
-            uint _e30 = count_1;
-            float _e31 = t_23;
-            const float _e32 = vol_in_stride(_e31);
-            const float _e33 = vol_in_advance(_e18, _e30, _e32);
-            float next_2 = (_e29 + _e33);
-            bool _e35 = hit;
-            if ((_e35 | (next_2 >= VOL_IN_FAR))) {
+            float _e19 = walker_3.t;
+            float _e21 = walker_3.before;
+            const Vol_in_Near _e22 = vol_in_nearest(ray_9, spans_2, sides_3, _e19, _e21);
+            Vol_in_Walker _e23 = walker_3;
+            const bool _e24 = vol_in_is_past(_e22, _e23);
+            if (_e24) {
+                Vol_in_Walker _e25 = walker_3;
+                const Vol_in_Walker _e26 = vol_in_back(_e25);
+                walker_3 = _e26;
+                continue;
+            }
+            float _e29 = walker_3.t;
+            const float _e30 = vol_in_tolerance(_e29);
+            uint _e31 = count_1;
+            hit = (_e22.value < ((_e31 == VOL_IN_MAX_STEPS) ? _e30 : 0.0));
+            solid_10 = _e22.solid;
+            Vol_in_Walker _e38 = walker_3;
+            uint _e39 = count_1;
+            float _e41 = walker_3.t;
+            const float _e42 = vol_in_stride(_e41);
+            const Vol_in_Walker _e43 = vol_in_onward(_e22, _e38, _e39, _e42);
+            bool _e44 = hit;
+            if ((_e44 | (_e43.t >= VOL_IN_FAR))) {
                 break;
             }
-            float _e39 = t_23;
-            before_3 = _e39;
-            t_23 = next_2;
+            walker_3 = _e43;
         }
     }
-    bool _e43 = hit;
-    if (_e43) {
-        uint _e44 = solid_10;
-        float _e45 = before_3;
-        float _e46 = t_23;
-        uint _e47 = solid_10;
-        float _e49 = sides_3[min(uint(_e47), 0u)];
-        const Vol_in_Contact _e50 = vol_in_refine(ray_9, _e44, _e45, _e46, _e49);
-        const Vol_in_Contact vol_in_contact_3 = _e50;
+    bool _e52 = hit;
+    if (_e52) {
+        uint _e53 = solid_10;
+        float _e55 = walker_3.before;
+        float _e57 = walker_3.t;
+        uint _e58 = solid_10;
+        float _e60 = sides_3[min(uint(_e58), 0u)];
+        const Vol_in_Contact _e61 = vol_in_refine(ray_9, _e53, _e55, _e57, _e60);
+        const Vol_in_Contact vol_in_contact_3 = _e61;
         return vol_in_contact_3;
     }
     const Vol_in_Contact vol_in_contact_4 = ConstructVol_in_Contact(false, 0u, 4000000.0, (0.0).xxx, (0.0).xxx, 0.0);
@@ -2507,11 +2574,11 @@ Vol_in_Arriving vol_in_arriving(uint light, float3 point_3)
     return vol_in_arriving_1;
 }
 
-float vol_in_shadow_bias(float t_24)
+float vol_in_shadow_bias(float t_23)
 {
     const float _e1 = vol_in_footprint();
-    float pixel_5 = ((0.1 * _e1) * t_24);
-    const float _e5 = vol_in_rounding(t_24);
+    float pixel_5 = ((0.1 * _e1) * t_23);
+    const float _e5 = vol_in_rounding(t_23);
     return (pixel_5 + _e5);
 }
 
@@ -2597,9 +2664,9 @@ Vol_in_Around ConstructVol_in_Around(float arg0, float arg1, float arg2) {
     return ret;
 }
 
-Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_25)
+Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], float t_24)
 {
-    Vol_in_Around near_2 = ConstructVol_in_Around(4000000.0, 4000000.0, 4000000.0);
+    Vol_in_Around near_4 = ConstructVol_in_Around(4000000.0, 4000000.0, 4000000.0);
     uint solid_12 = 0u;
 
     uint2 loop_bound_13 = uint2(4294967295u, 4294967295u);
@@ -2621,35 +2688,35 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
             uint _e13 = solid_12;
             Vol_in_Span span_3 = spans_4[min(uint(_e13), 0u)];
             bool some_2 = (span_3.entry <= span_3.leave);
-            bool before_11 = (some_2 & (t_25 < span_3.entry));
-            float _e24 = near_2.gap;
-            float _e26 = near_2.gap;
-            near_2.gap = (before_11 ? min(_e26, (span_3.entry - t_25)) : _e24);
-            if (((some_2 & (t_25 >= span_3.entry)) & (t_25 <= span_3.leave))) {
+            bool before_9 = (some_2 & (t_24 < span_3.entry));
+            float _e24 = near_4.gap;
+            float _e26 = near_4.gap;
+            near_4.gap = (before_9 ? min(_e26, (span_3.entry - t_24)) : _e24);
+            if (((some_2 & (t_24 >= span_3.entry)) & (t_24 <= span_3.leave))) {
                 uint _e37 = solid_12;
-                const float3 _e38 = vol_in_ray_at(ray_12, t_25);
+                const float3 _e38 = vol_in_ray_at(ray_12, t_24);
                 const float _e39 = vol_in_object_distance(_e37, _e38);
                 uint _e40 = solid_12;
-                const float _e42 = vol_in_shorten(_e40, ray_12, t_25, 0.0, _e39);
+                const float _e42 = vol_in_shorten(_e40, ray_12, t_24, 0.0, _e39);
                 uint _e43 = solid_12;
                 const uint _e44 = vol_in_object_word(_e43);
                 const float _e47 = vol_frame_word((_e44 + 7u));
                 bool own_units = (_e47 == VOL_IN_BY_STEEPNESS);
-                float _e52 = near_2.distance_;
-                near_2.distance_ = min(_e52, (own_units ? _e42 : _e39));
-                float _e57 = near_2.safe;
-                near_2.safe = min(_e57, _e42);
+                float _e52 = near_4.distance_;
+                near_4.distance_ = min(_e52, (own_units ? _e42 : _e39));
+                float _e57 = near_4.safe;
+                near_4.safe = min(_e57, _e42);
             }
         }
     }
-    Vol_in_Around _e62 = near_2;
+    Vol_in_Around _e62 = near_4;
     const Vol_in_Around vol_in_around_1 = _e62;
     return vol_in_around_1;
 }
 
-bool vol_in_enters(float distance_1, float t_26, float least_1)
+bool vol_in_enters(float distance_1, float t_25, float least_2)
 {
-    float start_2 = ((8.0 * least_1) - t_26);
+    float start_2 = ((8.0 * least_2) - t_25);
     return (distance_1 < -(max(start_2, 0.0)));
 }
 
@@ -2660,24 +2727,24 @@ float vol_in_least(float2 a_6, float2 b_6, float2 c_3)
     if (!((in_order & lowest_2))) {
         return c_3.y;
     }
-    float fall_1 = ((b_6.y - a_6.y) / (b_6.x - a_6.x));
+    float fall_2 = ((b_6.y - a_6.y) / (b_6.x - a_6.x));
     float rise_2 = ((c_3.y - b_6.y) / (c_3.x - b_6.x));
-    float bend = ((rise_2 - fall_1) / (c_3.x - a_6.x));
+    float bend = ((rise_2 - fall_2) / (c_3.x - a_6.x));
     if ((bend <= 0.0)) {
         return b_6.y;
     }
-    float place_9 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_1 / bend)));
-    float value_6 = (a_6.y + ((place_9 - a_6.x) * (fall_1 + (bend * (place_9 - b_6.x)))));
+    float place_10 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
+    float value_6 = (a_6.y + ((place_10 - a_6.x) * (fall_2 + (bend * (place_10 - b_6.x)))));
     return min(max(value_6, (0.75 * b_6.y)), b_6.y);
 }
 
-float vol_in_cone_step(Vol_in_Around near_3, float least_step, float slope_2, float t_27)
+float vol_in_cone_step(Vol_in_Around near_5, float least_step, float slope_2, float t_26)
 {
     const float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_2));
     float sine = sqrt(_e6);
-    float free_1 = ((near_3.safe - (sine * t_27)) / (1.0 + sine));
-    float shortest = max(least_step, ((0.002 * slope_2) * t_27));
-    return max(min(max(free_1, (0.5 * near_3.safe)), near_3.gap), shortest);
+    float free_1 = ((near_5.safe - (sine * t_26)) / (1.0 + sine));
+    float shortest = max(least_step, ((0.002 * slope_2) * t_26));
+    return max(min(max(free_1, (0.5 * near_5.safe)), near_5.gap), shortest);
 }
 
 float vol_in_clearance(float lowest, float slope_3)
@@ -2690,7 +2757,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
 {
     float lowest_1 = (float)0;
     Vol_in_Span spans_5[1] = (Vol_in_Span[1])0;
-    float t_28 = 0.0;
+    float t_27 = 0.0;
     float2 older = (0.0).xx;
     float2 newer = (0.0).xx;
     uint count_2 = 0u;
@@ -2715,18 +2782,18 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             break;
         }
         {
-            float _e24 = t_28;
+            float _e24 = t_27;
             const Vol_in_Around _e25 = vol_in_around(ray_13, spans_5, _e24);
-            float _e27 = t_28;
+            float _e27 = t_27;
             const bool _e28 = vol_in_enters(_e25.distance_, _e27, least_step_1);
             if (_e28) {
                 lowest_1 = 0.0;
                 break;
             }
-            float _e30 = t_28;
-            float _e38 = t_28;
+            float _e30 = t_27;
+            float _e38 = t_27;
             bool counts = (((_e30 > 0.0) & (_e25.distance_ >= 0.0)) & (_e25.distance_ < (end_19 - _e38)));
-            float _e42 = t_28;
+            float _e42 = t_27;
             float divisor_2 = (counts ? _e42 : 1.0);
             float sine_1 = min((_e25.distance_ / divisor_2), 1.0);
             float2 sample_1 = float2((1.0 / divisor_2), (sine_1 * sine_1));
@@ -2740,11 +2807,11 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             float2 _e64 = newer;
             older = (counts ? _e64 : (0.0).xx);
             newer = (counts ? sample_1 : (0.0).xx);
-            float _e69 = t_28;
-            float _e70 = t_28;
+            float _e69 = t_27;
+            float _e70 = t_27;
             const float _e71 = vol_in_cone_step(_e25, least_step_1, slope_4, _e70);
-            t_28 = (_e69 + _e71);
-            float _e73 = t_28;
+            t_27 = (_e69 + _e71);
+            float _e73 = t_27;
             if ((_e73 >= end_19)) {
                 break;
             }
@@ -2937,12 +3004,11 @@ void vol_in_no_sides(inout float sides_4[1])
     return;
 }
 
-bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2)
+bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3)
 {
     float sides_5[1] = (float[1])0;
     Vol_in_Span spans_6[1] = (Vol_in_Span[1])0;
-    float t_29 = 0.0;
-    float before_4 = 0.0;
+    Vol_in_Walker walker_4 = ConstructVol_in_Walker(0.0, 0.0, 0.0, false);
     bool inside_1 = false;
     uint count_3 = 1u;
 
@@ -2955,37 +3021,43 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_2)
         if (all(loop_bound_20 == uint2(0u, 0u))) { break; }
         loop_bound_20 -= uint2(loop_bound_20.y == 0u, 1u);
         if (!loop_init_20) {
-            uint _e34 = count_3;
-            count_3 = (_e34 + 1u);
+            uint _e42 = count_3;
+            count_3 = (_e42 + 1u);
         }
         loop_init_20 = false;
-        uint _e15 = count_3;
-        if ((_e15 <= VOL_IN_MAX_STEPS)) {
+        uint _e17 = count_3;
+        if ((_e17 <= VOL_IN_MAX_STEPS)) {
         } else {
             break;
         }
         {
-            float _e18 = t_29;
-            float _e19 = before_4;
-            const Vol_in_Near _e20 = vol_in_nearest(ray_15, spans_6, sides_5, _e18, _e19);
-            float _e22 = t_29;
-            const bool _e23 = vol_in_enters(_e20.distance_, _e22, least_2);
-            inside_1 = _e23;
-            float _e24 = t_29;
-            before_4 = _e24;
-            float _e25 = t_29;
-            uint _e26 = count_3;
-            const float _e27 = vol_in_advance(_e20, _e26, least_2);
-            t_29 = (_e25 + _e27);
-            bool _e29 = inside_1;
-            float _e30 = t_29;
-            if ((_e29 | (_e30 >= end_21))) {
+            float _e21 = walker_4.t;
+            float _e23 = walker_4.before;
+            const Vol_in_Near _e24 = vol_in_nearest(ray_15, spans_6, sides_5, _e21, _e23);
+            Vol_in_Walker _e25 = walker_4;
+            const bool _e26 = vol_in_is_past(_e24, _e25);
+            if (_e26) {
+                Vol_in_Walker _e27 = walker_4;
+                const Vol_in_Walker _e28 = vol_in_back(_e27);
+                walker_4 = _e28;
+                continue;
+            }
+            float _e31 = walker_4.t;
+            const bool _e32 = vol_in_enters(_e24.distance_, _e31, least_3);
+            inside_1 = _e32;
+            Vol_in_Walker _e33 = walker_4;
+            uint _e34 = count_3;
+            const Vol_in_Walker _e35 = vol_in_onward(_e24, _e33, _e34, least_3);
+            walker_4 = _e35;
+            bool _e36 = inside_1;
+            float _e38 = walker_4.t;
+            if ((_e36 | (_e38 >= end_21))) {
                 break;
             }
         }
     }
-    bool _e36 = inside_1;
-    return _e36;
+    bool _e44 = inside_1;
+    return _e44;
 }
 
 float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias)
@@ -3004,10 +3076,10 @@ Vol_in_Stencil ConstructVol_in_Stencil(uint4 arg0, float4 arg1) {
 Vol_in_Stencil vol_in_stencil(float place_1, float last_2, uint words, bool spline)
 {
     float index_22 = min(floor(place_1), (last_2 - 1.0));
-    float t_41 = (place_1 - index_22);
-    float4 local_12 = float4(((((1.0 - (0.5 * t_41)) * t_41) - 0.5) * t_41), (((((1.5 * t_41) - 2.5) * t_41) * t_41) + 1.0), ((((2.0 - (1.5 * t_41)) * t_41) + 0.5) * t_41), ((((0.5 * t_41) - 0.5) * t_41) * t_41));
-    float back_1 = (1.0 - t_41);
-    float4 through = float4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_41 * t_41) * (1.0 - (0.5 * t_41)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_41 * (t_41 * t_41))));
+    float t_39 = (place_1 - index_22);
+    float4 local_12 = float4(((((1.0 - (0.5 * t_39)) * t_39) - 0.5) * t_39), (((((1.5 * t_39) - 2.5) * t_39) * t_39) + 1.0), ((((2.0 - (1.5 * t_39)) * t_39) + 0.5) * t_39), ((((0.5 * t_39) - 0.5) * t_39) * t_39));
+    float back_1 = (1.0 - t_39);
+    float4 through = float4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
     float4 weights_8 = (spline ? through : local_12);
     int4 around = asint(asuint((naga_f2i32(index_22)).xxxx) + asuint(int4(int(-1), int(0), int(1), int(2))));
     const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil((uint4(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx)) * words), weights_8);
@@ -3097,10 +3169,10 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     float divisor_3 = ((ahead_4 & !(distant_1)) ? _e29 : 1.0);
     const float _e41 = vol_in_length3_(off);
     float3 seen_4 = float3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
-    float3 last_6 = (_e13 - (1.0).xxx);
-    float3 place_10 = ((seen_4 - _e7) * _e10);
-    bool beside_1 = ((((place_10.x < 0.0) | (place_10.x > last_6.x)) | (place_10.y < 0.0)) | (place_10.y > last_6.y));
-    if (((!(ahead_4) | beside_1) | (place_10.z <= 0.0))) {
+    float3 last_7 = (_e13 - (1.0).xxx);
+    float3 place_11 = ((seen_4 - _e7) * _e10);
+    bool beside_1 = ((((place_11.x < 0.0) | (place_11.x > last_7.x)) | (place_11.y < 0.0)) | (place_11.y > last_7.y));
+    if (((!(ahead_4) | beside_1) | (place_11.z <= 0.0))) {
         return (0.0).xxx;
     }
     const float _e74 = vol_frame_word((grid + 25u));
@@ -3108,9 +3180,9 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     uint column = (channels_1 * naga_f2u32(_e13.z));
     const float _e81 = vol_frame_word((grid + 27u));
     bool spline_1 = (_e81 != 0.0);
-    const Vol_in_Stencil _e89 = vol_in_stencil(place_10.x, last_6.x, (column * naga_f2u32(_e13.y)), spline_1);
-    const Vol_in_Stencil _e92 = vol_in_stencil(place_10.y, last_6.y, column, spline_1);
-    const Vol_in_Stencil _e97 = vol_in_stencil(min(place_10.z, last_6.z), last_6.z, channels_1, spline_1);
+    const Vol_in_Stencil _e89 = vol_in_stencil(place_11.x, last_7.x, (column * naga_f2u32(_e13.y)), spline_1);
+    const Vol_in_Stencil _e92 = vol_in_stencil(place_11.y, last_7.y, column, spline_1);
+    const Vol_in_Stencil _e97 = vol_in_stencil(min(place_11.z, last_7.z), last_7.z, channels_1, spline_1);
     const float _e100 = vol_frame_word((grid + 26u));
     uint first_5 = naga_f2u32(_e100);
     const float3 _e104 = vol_in_word3_((grid + 22u));
@@ -3161,8 +3233,8 @@ int2 vol_in_node_range(Vol_in_Ray ray_17, float3 lo_3, float3 hi_3, inout Vol_in
     float _e19 = comb.offset;
     float first_6 = min(max(floor(((_e11.entry / step_size_4) - _e19)), 0.0), VOL_IN_LAST_NODE);
     float _e30 = comb.offset;
-    float last_7 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
-    return ((_e11.entry > leave_1) ? int2(int(0), int(-1)) : int2(naga_f2i32(first_6), naga_f2i32(last_7)));
+    float last_8 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
+    return ((_e11.entry > leave_1) ? int2(int(0), int(-1)) : int2(naga_f2i32(first_6), naga_f2i32(last_8)));
 }
 
 Vol_in_Runs ConstructVol_in_Runs(float4 arg0, float4 arg1) {
@@ -3172,19 +3244,19 @@ Vol_in_Runs ConstructVol_in_Runs(float4 arg0, float4 arg1) {
     return ret;
 }
 
-Vol_in_Runs vol_in_add_run(Vol_in_Runs before_5, int2 nodes)
+Vol_in_Runs vol_in_add_run(Vol_in_Runs before_3, int2 nodes)
 {
     float2 range = float2(nodes);
-    bool4 continued = ((before_5.first <= ((range.y + 2.0)).xxxx) & (before_5.last >= ((range.x - 2.0)).xxxx));
-    float4 own_first = (continued ? before_5.first : (8388608.0).xxxx);
-    float4 own_last = (continued ? before_5.last : (-1.0).xxxx);
+    bool4 continued = ((before_3.first <= ((range.y + 2.0)).xxxx) & (before_3.last >= ((range.x - 2.0)).xxxx));
+    float4 own_first = (continued ? before_3.first : (8388608.0).xxxx);
+    float4 own_last = (continued ? before_3.last : (-1.0).xxxx);
     float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
-    float4 kept_first = (continued ? (8388608.0).xxxx : before_5.first);
-    float4 kept_last = (continued ? (-1.0).xxxx : before_5.last);
+    float last_9 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    float4 kept_first = (continued ? (8388608.0).xxxx : before_3.first);
+    float4 kept_last = (continued ? (-1.0).xxxx : before_3.last);
     bool4 free_2 = (kept_first == (8388608.0).xxxx);
-    bool4 place_11 = bool4(free_2.x, (free_2.y & !(free_2.x)), (free_2.z & !((free_2.x | free_2.y))), !(((free_2.x | free_2.y) | free_2.z)));
-    const Vol_in_Runs vol_in_runs = ConstructVol_in_Runs((place_11 ? min(kept_first, (first_7).xxxx) : kept_first), (place_11 ? max(kept_last, (last_8).xxxx) : kept_last));
+    bool4 place_12 = bool4(free_2.x, (free_2.y & !(free_2.x)), (free_2.z & !((free_2.x | free_2.y))), !(((free_2.x | free_2.y) | free_2.z)));
+    const Vol_in_Runs vol_in_runs = ConstructVol_in_Runs((place_12 ? min(kept_first, (first_7).xxxx) : kept_first), (place_12 ? max(kept_last, (last_9).xxxx) : kept_last));
     return vol_in_runs;
 }
 
@@ -3252,10 +3324,10 @@ int2 vol_in_run_from(Vol_in_Runs runs_1, int node)
 {
     float earliest = float(node);
     float4 first_8 = ((runs_1.last >= (earliest).xxxx) ? max(runs_1.first, (earliest).xxxx) : (8388608.0).xxxx);
-    float least_3 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    float4 last_9 = ((first_8 == (least_3).xxxx) ? runs_1.last : (earliest).xxxx);
-    int end_22 = naga_f2i32(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
-    return int2(naga_f2i32(least_3), ((least_3 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
+    float least_4 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
+    float4 last_10 = ((first_8 == (least_4).xxxx) ? runs_1.last : (earliest).xxxx);
+    int end_22 = naga_f2i32(max(max(last_10.x, last_10.y), max(last_10.z, last_10.w)));
+    return int2(naga_f2i32(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
 }
 
 Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size)
@@ -3306,14 +3378,14 @@ int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead)
         first_1 = min(_e19, _e23);
     }
     int _e25 = first_1;
-    int next_3 = max(after, asint(asuint(_e25) - asuint(lead)));
+    int next_2 = max(after, asint(asuint(_e25) - asuint(lead)));
     {
         float _e33 = comb_3.before[0u];
-        comb_3.before[0u] = ((next_3 > after) ? VOL_IN_FAR : _e33);
+        comb_3.before[0u] = ((next_2 > after) ? VOL_IN_FAR : _e33);
         float _e41 = comb_3.own[0u];
-        comb_3.own[0u] = ((next_3 > after) ? VOL_IN_FAR : _e41);
+        comb_3.own[0u] = ((next_2 > after) ? VOL_IN_FAR : _e41);
     }
-    return next_3;
+    return next_2;
 }
 
 float vol_in_node_distance(int node_2, float step_size_1, float offset)
@@ -3333,9 +3405,9 @@ float vol_in_panel_node(inout Vol_in_Comb comb_4, int node_3)
 float vol_in_gap_probe(Vol_in_Gap gap, uint round_2)
 {
     float length_1 = (gap.stop.x - gap.start.x);
-    float least_4 = (VOL_IN_LEAST_SHARE * length_1);
-    float touching = ((gap.start.y + least_4) / ((gap.start.y + gap.stop.y) + (least_4 + least_4)));
-    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching : 0.5)));
+    float least_5 = (VOL_IN_LEAST_SHARE * length_1);
+    float touching_1 = ((gap.start.y + least_5) / ((gap.start.y + gap.stop.y) + (least_5 + least_5)));
+    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching_1 : 0.5)));
 }
 
 float vol_in_crossing_probe(Vol_in_Crossing crossing)
@@ -3399,7 +3471,7 @@ Vol_in_Between ConstructVol_in_Between(float arg0, float2 arg1, uint arg2) {
     return ret;
 }
 
-Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, float2 t_30)
+Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, float2 t_28)
 {
     Vol_in_Between between = ConstructVol_in_Between(4000000.0, (0.0).xx, 0u);
     Vol_in_Gap gap_3 = (Vol_in_Gap)0;
@@ -3425,7 +3497,7 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
             break;
         }
         {
-            probe = t_30.y;
+            probe = t_28.y;
             uint _e38 = aim;
             if ((_e38 == VOL_IN_A_GAP)) {
                 Vol_in_Gap _e41 = gap_3;
@@ -3463,11 +3535,11 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
             if ((_e68 == VOL_IN_THE_NODE)) {
                 float _e72 = value_3;
                 between.next = _e72;
-                float2 start_3 = float2(t_30.x, own_5);
+                float2 start_3 = float2(t_28.x, own_5);
                 round_3 = 0u;
                 aim = VOL_IN_NO_MORE;
                 int _e78 = comb_5.first;
-                if (((node_4 >= _e78) & (t_30.x < t_30.y))) {
+                if (((node_4 >= _e78) & (t_28.x < t_28.y))) {
                     float _e86 = value_3;
                     if (((own_5 < 0.0) != (_e86 < 0.0))) {
                         crossing_2 = ConstructVol_in_Crossing(((own_5 < 0.0) ? start_3 : found_5), ((own_5 < 0.0) ? found_5 : start_3), 0u);
@@ -3533,9 +3605,9 @@ Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_
     return vol_in_between;
 }
 
-float2 vol_in_panel_stretch(float own, float2 t_31, Vol_in_Between between_1)
+float2 vol_in_panel_stretch(float own, float2 t_29, Vol_in_Between between_1)
 {
-    return (bool2((own < 0.0), (between_1.next < 0.0)) ? t_31 : between_1.walls);
+    return (bool2((own < 0.0), (between_1.next < 0.0)) ? t_29 : between_1.walls);
 }
 
 uint2 vol_in_new_ends(float own_1, Vol_in_Between between_2)
@@ -3545,19 +3617,19 @@ uint2 vol_in_new_ends(float own_1, Vol_in_Between between_2)
     return uint2(first_10, (((between_2.next < 0.0) | has_walls) ? 2u : VOL_IN_STOP_END));
 }
 
-bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, float2 t_32, float own_2, Vol_in_Between between_3)
+bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, float2 t_30, float own_2, Vol_in_Between between_3)
 {
     bool some_3 = (((own_2 < 0.0) | (between_3.next < 0.0)) | (between_3.count > 0u));
     int _e16 = comb_6.first;
-    return (((node_5 >= _e16) & (t_32.x < t_32.y)) & some_3);
+    return (((node_5 >= _e16) & (t_30.x < t_30.y)) & some_3);
 }
 
-bool2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, float2 t_33, float own_3, float next)
+bool2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, float2 t_31, float own_3, float next)
 {
     float _e9 = comb_7.step_;
     float _e11 = comb_7.offset;
     const float _e12 = vol_in_node_distance(asint(asuint(node_6) + asuint(int(1))), _e9, _e11);
-    bool is_last = (t_33.y < _e12);
+    bool is_last = (t_31.y < _e12);
     return bool2(((own_3 >= 0.0) | (node_6 == int(0))), ((next >= 0.0) | is_last));
 }
 
@@ -3574,13 +3646,13 @@ float2 vol_in_panel_masses(float step_size_2, float length_, float2 ends_2, bool
     float missed = max(min(((0.083333336 * step_size_2) * (part_5 * rise_3)), most_1), -(most_1));
     float2 given = (open.x ? float2(0.0, missed) : float2(missed, 0.0));
     float2 plain = max(((half_1 * densities) + ((open.x == open.y) ? (0.0).xx : given)), (0.0).xx);
-    float fall_2 = (changes ? (above_1 - below_1) : 1.0);
-    float mass = ((half_1 * (above_1 * (above_1 / fall_2))) + (length_ * (fall_2 * 0.083333336)));
+    float fall_3 = (changes ? (above_1 - below_1) : 1.0);
+    float mass = ((half_1 * (above_1 * (above_1 / fall_3))) + (length_ * (fall_3 * 0.083333336)));
     float2 cut = ((ends_2.x > 0.0) ? float2(mass, 0.0) : float2(0.0, mass));
     return (changes ? cut : plain);
 }
 
-float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout float4 before_6[1])
+float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout float4 before_4[1])
 {
     float3 depth_1 = (0.0).xxx;
     float4 first_2 = (float4)0;
@@ -3590,12 +3662,12 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_
     float step_size_5 = comb_8.step_;
     const float _e6 = vol_in_panel_node(comb_8, node_7);
     const float _e9 = vol_in_panel_node(comb_8, asint(asuint(node_7) + asuint(int(1))));
-    float2 t_42 = float2(_e6, _e9);
+    float2 t_40 = float2(_e6, _e9);
     {
         float own_6 = comb_8.own[0u];
-        const Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_42);
-        const float2 _e19 = vol_in_panel_stretch(own_6, t_42, _e18);
-        float4 _e21 = before_6[0u];
+        const Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_40);
+        const float2 _e19 = vol_in_panel_stretch(own_6, t_40, _e18);
+        float4 _e21 = before_4[0u];
         first_2 = _e21;
         const uint2 _e26 = vol_in_new_ends(own_6, _e18);
         end_5 = _e26.x;
@@ -3626,10 +3698,10 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_
             }
         }
         float4 _e50 = last_3;
-        before_6[0u] = ((_e18.next < 0.0) ? _e50 : (0.0).xxxx);
-        const bool _e55 = vol_in_has_panel(comb_8, node_7, t_42, own_6, _e18);
+        before_4[0u] = ((_e18.next < 0.0) ? _e50 : (0.0).xxxx);
+        const bool _e55 = vol_in_has_panel(comb_8, node_7, t_40, own_6, _e18);
         if (_e55) {
-            const bool2 _e57 = vol_in_open_ends(comb_8, node_7, t_42, own_6, _e18.next);
+            const bool2 _e57 = vol_in_open_ends(comb_8, node_7, t_40, own_6, _e18.next);
             float _e62 = first_2.x;
             float _e64 = last_3.x;
             const float2 _e66 = vol_in_panel_masses(step_size_5, (_e19.y - _e19.x), float2(_e62, _e64), _e57);
@@ -3646,7 +3718,7 @@ float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_
 float3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6)
 {
     Vol_in_Comb comb_9 = (Vol_in_Comb)0;
-    float4 before_7[1] = (float4[1])0;
+    float4 before_5[1] = (float4[1])0;
     float3 depth_2 = (0.0).xxx;
     int node_8 = (int)0;
 
@@ -3675,7 +3747,7 @@ float3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6)
         {
             float3 _e19 = depth_2;
             int _e20 = node_8;
-            const float3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_7);
+            const float3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_5);
             depth_2 = (_e19 + _e21);
             float3 _e23 = depth_2;
             const float _e24 = vol_in_smallest(_e23);
@@ -3688,17 +3760,17 @@ float3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6)
     return _e30;
 }
 
-float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, int2 run, float t_34, int node_9, float end_7)
+float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, int2 run, float t_32, int node_9, float end_7)
 {
     float region = VOL_IN_FAR;
 
     if (((node_9 >= asint(asuint(run.x) - asuint(int(1)))) & (node_9 <= asint(asuint(run.y) + asuint(int(1)))))) {
-        const float3 _e17 = vol_in_ray_at(ray_23, t_34);
+        const float3 _e17 = vol_in_ray_at(ray_23, t_32);
         const float _e18 = vol_in_medium_region(medium_3, _e17);
         region = _e18;
     }
     float _e19 = region;
-    return max(_e19, max((t_34 - end_7), -(t_34)));
+    return max(_e19, max((t_32 - end_7), -(t_32)));
 }
 
 float vol_in_share(float own_4, float other_1, float step_size_3)
@@ -3716,19 +3788,19 @@ bool vol_in_weigh(Vol_in_Ray ray_24, inout Vol_in_Comb comb_10, int node_10, ino
     float _e11 = comb_10.offset;
     const float _e12 = vol_in_node_distance(asint(asuint(node_10) + asuint(int(1))), step_size_6, _e11);
     {
-        float before_12 = comb_10.before[0u];
+        float before_10 = comb_10.before[0u];
         float own_7 = comb_10.own[0u];
         int2 _e22 = comb_10.runs[0u];
         float _e26 = comb_10.end;
         const float _e27 = vol_in_wall(ray_24, 0u, _e22, _e12, asint(asuint(node_10) + asuint(int(1))), _e26);
-        const float _e28 = vol_in_share(own_7, before_12, step_size_6);
+        const float _e28 = vol_in_share(own_7, before_10, step_size_6);
         const float _e29 = vol_in_share(own_7, _e27, step_size_6);
         float weight = (_e28 + _e29);
         int _e34 = comb_10.first;
-        bool is_inside = ((own_7 < 0.0) & (node_10 >= _e34));
-        weights[0u] = (is_inside ? weight : 0.0);
+        bool is_inside_1 = ((own_7 < 0.0) & (node_10 >= _e34));
+        weights[0u] = (is_inside_1 ? weight : 0.0);
         bool _e40 = any_inside;
-        any_inside = (_e40 | is_inside);
+        any_inside = (_e40 | is_inside_1);
         comb_10.before[0u] = own_7;
         comb_10.own[0u] = _e27;
     }
@@ -4075,7 +4147,7 @@ Vol_in_PanelEnd ConstructVol_in_PanelEnd(Vol_in_Interior arg0, float3 arg1, floa
     return ret;
 }
 
-void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, float2 t_35, inout Vol_in_Panels panels)
+void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, float2 t_33, inout Vol_in_Panels panels)
 {
     Vol_in_PanelEnd start = (Vol_in_PanelEnd)0;
     Vol_in_PanelEnd stop = (Vol_in_PanelEnd)0;
@@ -4086,8 +4158,8 @@ void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_1
     panels.some = false;
     {
         float own_8 = comb_12.own[0u];
-        const Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_35);
-        const float2 _e15 = vol_in_panel_stretch(own_8, t_35, _e14);
+        const Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_33);
+        const float2 _e15 = vol_in_panel_stretch(own_8, t_33, _e14);
         Vol_in_Interior nothing = ConstructVol_in_Interior(0.0, (0.0).xxx, (0.0).xxx, (0.0).xxx);
         Vol_in_PanelEnd _e26 = panels.starts[0u];
         start = _e26;
@@ -4123,12 +4195,12 @@ void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_1
                 }
             }
         }
-        const bool _e65 = vol_in_has_panel(comb_12, node_12, t_35, own_8, _e14);
+        const bool _e65 = vol_in_has_panel(comb_12, node_12, t_33, own_8, _e14);
         if (_e65) {
             float _e68 = start.interior.density;
             float _e71 = stop.interior.density;
             float2 densities_1 = float2(_e68, _e71);
-            const bool2 _e74 = vol_in_open_ends(comb_12, node_12, t_35, own_8, _e14.next);
+            const bool2 _e74 = vol_in_open_ends(comb_12, node_12, t_33, own_8, _e14.next);
             float _e76 = comb_12.step_;
             const float2 _e80 = vol_in_panel_masses(_e76, (_e15.y - _e15.x), densities_1, _e74);
             masses = _e80;
@@ -4211,12 +4283,12 @@ uint vol_in_next_dark_place(inout Vol_in_Panels panels_2, uint first_3)
     return _e48;
 }
 
-float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_36)
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_34)
 {
     return 1.0;
 }
 
-float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_37, inout float3 scatter[1])
+float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_35, inout float3 scatter[1])
 {
     bool asked = false;
     float part_2 = 1.0;
@@ -4232,7 +4304,7 @@ float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_i
     }
     bool _e22 = asked;
     if ((_e22 & lamp_3.shadows)) {
-        const float3 _e25 = vol_in_ray_at(ray_34, t_37);
+        const float3 _e25 = vol_in_ray_at(ray_34, t_35);
         const Vol_in_Ray _e27 = vol_in_new_ray(_e25, lamp_3.direction);
         if (VOL_IN_STYLES) {
             local_6 = (lamp_3.style != 0u);
@@ -4241,10 +4313,10 @@ float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_i
         }
         bool _e37 = local_6;
         if (_e37) {
-            const float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_37);
+            const float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_35);
             part_2 = _e38;
         } else {
-            const float _e40 = vol_in_shadow_bias(t_37);
+            const float _e40 = vol_in_shadow_bias(t_35);
             const float _e41 = vol_in_unblocked(_e27, lamp_3.distance_, _e40);
             part_2 = _e41;
         }
@@ -4288,13 +4360,13 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, float3 seen_1, float3 directio
     }
 }
 
-void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays styled_1, inout float3 scatter_2[1], inout float3 source_1[1])
+void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays styled_1, inout float3 scatter_2[1], inout float3 source_1[1])
 {
     uint light_5 = 0u;
     float3 seen_2 = (float3)0;
     bool local_7 = (bool)0;
 
-    const float3 _e5 = vol_in_ray_at(ray_35, t_38);
+    const float3 _e5 = vol_in_ray_at(ray_35, t_36);
     const uint _e6 = vol_in_light_count();
     uint2 loop_bound_34 = uint2(4294967295u, 4294967295u);
     bool loop_init_32 = true;
@@ -4315,7 +4387,7 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_38, inout Vol_in_StyledRays s
             uint _e11 = light_5;
             const Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
             uint _e13 = light_5;
-            const float3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_38, scatter_2);
+            const float3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_36, scatter_2);
             seen_2 = _e14;
             if (VOL_IN_STYLES) {
                 local_7 = (_e12.style != 0u);
@@ -4403,11 +4475,11 @@ int naga_mod(int lhs, int rhs) {
     return lhs - (lhs / divisor) * divisor;
 }
 
-Vol_in_Glow vol_in_gather(Vol_in_Glow before_8, int node_13, Vol_in_Chunk chunk)
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_6, int node_13, Vol_in_Chunk chunk)
 {
     Vol_in_Glow glow = (Vol_in_Glow)0;
 
-    glow = before_8;
+    glow = before_6;
     const float3 _e5 = vol_in_decay3_(chunk.depth);
     float3 _e7 = glow.light;
     float3 _e9 = glow.transmittance;
@@ -4506,9 +4578,9 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14)
             const float _e21 = vol_in_panel_node(comb_13, _e20);
             int _e22 = node_14;
             const float _e25 = vol_in_panel_node(comb_13, asint(asuint(_e22) + asuint(int(1))));
-            float2 t_43 = float2(_e21, _e25);
+            float2 t_41 = float2(_e21, _e25);
             int _e27 = node_14;
-            vol_in_find_panels(ray_37, comb_13, _e27, t_43, panels_5);
+            vol_in_find_panels(ray_37, comb_13, _e27, t_41, panels_5);
             lit_after_1 = false;
             bool _e31 = panels_5.some;
             if (_e31) {
@@ -4541,14 +4613,14 @@ Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14)
     return vol_in_glow_2;
 }
 
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_StyledRays styled_4, inout float weights_4[1])
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_37, inout Vol_in_StyledRays styled_4, inout float weights_4[1])
 {
     float3 depth_6 = (0.0).xxx;
     float3 scatter_4[1] = (float3[1])0;
     float3 source_3[1] = (float3[1])0;
     float3 sent_1 = (0.0).xxx;
 
-    const float3 _e4 = vol_in_ray_at(ray_38, t_39);
+    const float3 _e4 = vol_in_ray_at(ray_38, t_37);
     {
         float weight_2 = weights_4[0u];
         scatter_4[0u] = (0.0).xxx;
@@ -4563,7 +4635,7 @@ Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_39, inout Vol_in_Style
         }
     }
     if (VOL_IN_LIT_MEDIA) {
-        vol_in_light_place(ray_38, t_39, styled_4, scatter_4, source_3);
+        vol_in_light_place(ray_38, t_37, styled_4, scatter_4, source_3);
     }
     {
         float3 _e41 = sent_1;
@@ -4691,10 +4763,10 @@ Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_41)
 
 float2 vol_in_place_in_pixel(uint index_19)
 {
-    uint step_1 = naga_div((index_19 + 1u), 2u);
-    uint signed_ = ((naga_mod(index_19, 2u) == 1u) ? step_1 : (0u - step_1));
-    uint2 place_12 = ((((signed_).xx * VOL_IN_STRIDE) + (2147483648u).xx) >> (16u).xx);
-    return (float2(place_12) * 1.5258789e-5);
+    uint step_3 = naga_div((index_19 + 1u), 2u);
+    uint signed_ = ((naga_mod(index_19, 2u) == 1u) ? step_3 : (0u - step_3));
+    uint2 place_13 = ((((signed_).xx * VOL_IN_STRIDE) + (2147483648u).xx) >> (16u).xx);
+    return (float2(place_13) * 1.5258789e-5);
 }
 
 Vol_in_Ray vol_in_camera_ray(float2 place_5)
@@ -4717,8 +4789,8 @@ Vol_in_Ray vol_in_camera_ray(float2 place_5)
 
 float vol_in_comb_shift(uint2 pixel, uint index_20)
 {
-    uint place_13 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
-    return ((float(((place_13 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+    uint place_14 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_14 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
 }
 
 Vol_in_Ray vol_in_pixel_ray(uint2 pixel_1, uint index_21, uint corner)
@@ -4816,7 +4888,7 @@ bool vol_in_is_probed()
     return _e12;
 }
 
-Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_9, uint last_4)
+Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_7, uint last_4)
 {
     Vol_in_Mean mean_4 = (Vol_in_Mean)0;
     uint corner_1 = VOL_IN_NO_CORNER;
@@ -4824,7 +4896,7 @@ Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_9, uint last_4
     bool local_10 = (bool)0;
     bool local_11 = (bool)0;
 
-    mean_4 = before_9;
+    mean_4 = before_7;
     uint2 loop_bound_38 = uint2(4294967295u, 4294967295u);
     while(true) {
         if (all(loop_bound_38 == uint2(0u, 0u))) { break; }
@@ -4907,8 +4979,8 @@ float4 vol_radiance(float3 origin_1, float3 direction_4)
     const float _e2 = vol_in_length3_(direction_4);
     const Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / (_e2).xxx));
     const Vol_in_Radiance _e6 = vol_in_radiance(_e5);
-    float3 t_44 = _e6.transmittance;
-    float clear_3 = (((t_44.x + t_44.y) + t_44.z) * 0.33333334);
+    float3 t_42 = _e6.transmittance;
+    float clear_3 = (((t_42.x + t_42.y) + t_42.z) * 0.33333334);
     return float4(_e6.color, (1.0 - clear_3));
 }
 
@@ -4916,8 +4988,8 @@ float4 vol_pixel(float2 place_6)
 {
     const Vol_in_Ray _e1 = vol_in_camera_ray(place_6);
     const Vol_in_Radiance _e2 = vol_in_radiance(_e1);
-    float3 t_45 = _e2.transmittance;
-    float clear_4 = (((t_45.x + t_45.y) + t_45.z) * 0.33333334);
+    float3 t_43 = _e2.transmittance;
+    float clear_4 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
     return float4(_e2.color, (1.0 - clear_4));
 }
 

@@ -1478,6 +1478,8 @@ const VOL_IN_NO_DEPTH: f32 = 1e30;
 const VOL_IN_MAX_SPREAD_TANGENT: f32 = 1.7320508;
 const VOL_IN_MAX_STEPS: u32 = 2000u;
 const VOL_IN_REFINEMENTS: u32 = 4u;
+const VOL_IN_EAGERNESS: f32 = 1.95;
+const VOL_IN_ROOM: f32 = 0.98;
 const VOL_IN_MAX_NODES: i32 = 16384;
 const VOL_IN_LAST_NODE: f32 = 4194304.0;
 const VOL_IN_SHOWS_NORMALS: f32 = 2.0;
@@ -1817,6 +1819,17 @@ struct Vol_in_Near {
     solid: u32,
     gap: f32,
     rest: f32,
+    entry: f32,
+    leave: f32,
+}
+
+// A ray on its way: how far it is, where it was one step earlier, how far nothing could be from there, and whether it
+// went farther than that.
+struct Vol_in_Walker {
+    t: f32,
+    before: f32,
+    free: f32,
+    guessed: bool,
 }
 
 struct Vol_in_Contact {
@@ -1917,7 +1930,7 @@ fn vol_in_nearest(
     t: f32,
     before: f32,
 ) -> Vol_in_Near {
-    var near = Vol_in_Near(VOL_IN_FAR, VOL_IN_FAR, 0u, VOL_IN_FAR, 0.0);
+    var near = Vol_in_Near(VOL_IN_FAR, VOL_IN_FAR, 0u, VOL_IN_FAR, 0.0, VOL_IN_FAR, VOL_IN_FAR);
     // What was near without the parts of a union that holds the eye, and the farthest wall of those: a ray is
     // inside as long as it is in one of them.
     var others = near;
@@ -1932,8 +1945,12 @@ fn vol_in_nearest(
         let some = span.entry <= span.leave;
         let ahead = some & (t < span.entry);
         near.gap = select(near.gap, min(near.gap, span.entry - t), ahead);
+        near.entry = select(near.entry, min(near.entry, span.entry), ahead);
         if (some & (t >= span.entry) & (t <= span.leave)) {
             near.rest = max(near.rest, span.leave - t);
+            // A solid with a bound along rays alone tells nothing of what is beside the way.
+            let is_ball = vol_frame_word(vol_in_object_word(solid) + 7u) != VOL_IN_BY_STEEPNESS;
+            near.leave = min(near.leave, select(0.0, span.leave, is_ball));
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * vol_in_object_distance(solid, vol_in_ray_at(ray, t));
             let safe = vol_in_shorten(solid, ray, t, t - before, seen);
@@ -1953,10 +1970,37 @@ fn vol_in_nearest(
 // goes through what is left of the boxes in even steps.
 fn vol_in_advance(near: Vol_in_Near, step: u32, least: f32) -> f32 {
     let free = min(near.distance, near.gap);
-    let stuck = step > (VOL_IN_MAX_STEPS / 2u);
     let left = f32((VOL_IN_MAX_STEPS - step) + 1u);
-    let even = select(0.0, min(near.rest / left, near.gap), stuck);
+    let even = select(0.0, min(near.rest / left, near.gap), vol_in_is_stuck(step));
     return max(max(free, least), even);
+}
+
+fn vol_in_is_stuck(step: u32) -> bool {
+    return step > (VOL_IN_MAX_STEPS / 2u);
+}
+
+// Goes on, if possible farther than is sure: runtime-cpu/src/render/near.rs says why.
+fn vol_in_onward(near: Vol_in_Near, walker: Vol_in_Walker, step: u32, least: f32) -> Vol_in_Walker {
+    let sure = vol_in_advance(near, step, least);
+    let last = walker.t - walker.before;
+    let is_first = last <= 0.0;
+    let fall = max((walker.free - near.distance) / select(last, 1.0, is_first), 0.0);
+    let touching = (VOL_IN_EAGERNESS * near.distance) / (1.0 + fall);
+    let guess = min(min(touching, VOL_IN_ROOM * near.gap), VOL_IN_ROOM * (near.leave - walker.t));
+    let place = walker.t + guess;
+    let is_inside = (place < near.entry) & (place <= near.leave);
+    let guessed = (guess > sure) & is_inside & !is_first & !vol_in_is_stuck(step);
+    return Vol_in_Walker(select(walker.t + sure, place, guessed), walker.t, sure, guessed);
+}
+
+// Whether a walker has gone too far: the balls that are empty around this place and the last do not touch.
+fn vol_in_is_past(near: Vol_in_Near, walker: Vol_in_Walker) -> bool {
+    return walker.guessed & ((walker.free + near.distance) < (walker.t - walker.before));
+}
+
+// Goes back to where it was sure to come.
+fn vol_in_back(walker: Vol_in_Walker) -> Vol_in_Walker {
+    return Vol_in_Walker(walker.before + walker.free, walker.before, walker.free, false);
 }
 
 // First surface on the ray.
@@ -1965,25 +2009,27 @@ fn vol_in_trace(ray: Vol_in_Ray) -> Vol_in_Contact {
     var spans: array<Vol_in_Span, VOL_IN_OBJECT_SLOTS>;
     vol_in_find_sides(&sides);
     vol_in_object_spans(ray, &sides, &spans);
-    var t = 0.0;
-    var before = 0.0;
+    var walker = Vol_in_Walker(0.0, 0.0, 0.0, false);
     var hit = false;
     var solid = 0u;
     for (var count = 1u; count <= VOL_IN_MAX_STEPS; count++) {
-        let near = vol_in_nearest(ray, &spans, &sides, t, before);
+        let near = vol_in_nearest(ray, &spans, &sides, walker.t, walker.before);
+        if (vol_in_is_past(near, walker)) {
+            walker = vol_in_back(walker);
+            continue;
+        }
         // Stop inside a solid; on the last step also where it would have been near enough.
-        hit = near.value < select(0.0, vol_in_tolerance(t), count == VOL_IN_MAX_STEPS);
+        hit = near.value < select(0.0, vol_in_tolerance(walker.t), count == VOL_IN_MAX_STEPS);
         solid = near.solid;
         // Walk as far as nothing can be, at least a fortieth of a pixel.
-        let next = t + vol_in_advance(near, count, vol_in_stride(t));
-        if (hit | (next >= VOL_IN_FAR)) {
+        let next = vol_in_onward(near, walker, count, vol_in_stride(walker.t));
+        if (hit | (next.t >= VOL_IN_FAR)) {
             break;
         }
-        before = t;
-        t = next;
+        walker = next;
     }
     if (hit) {
-        return vol_in_refine(ray, solid, before, t, sides[solid]);
+        return vol_in_refine(ray, solid, walker.before, walker.t, sides[solid]);
     }
     return Vol_in_Contact(false, 0u, VOL_IN_FAR, vec3f(0.0), vec3f(0.0), 0.0);
 }
@@ -2197,16 +2243,18 @@ fn vol_in_blocked(ray: Vol_in_Ray, distance: f32, least: f32) -> bool {
     vol_in_no_sides(&sides);
     vol_in_object_spans(ray, &sides, &spans);
     let end = min(distance, VOL_IN_FAR);
-    var t = 0.0;
-    var before = 0.0;
+    var walker = Vol_in_Walker(0.0, 0.0, 0.0, false);
     var inside = false;
     for (var count = 1u; count <= VOL_IN_MAX_STEPS; count++) {
+        let near = vol_in_nearest(ray, &spans, &sides, walker.t, walker.before);
+        if (vol_in_is_past(near, walker)) {
+            walker = vol_in_back(walker);
+            continue;
+        }
         // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
-        let near = vol_in_nearest(ray, &spans, &sides, t, before);
-        inside = vol_in_enters(near.distance, t, least);
-        before = t;
-        t += vol_in_advance(near, count, least);
-        if (inside | (t >= end)) {
+        inside = vol_in_enters(near.distance, walker.t, least);
+        walker = vol_in_onward(near, walker, count, least);
+        if (inside | (walker.t >= end)) {
             break;
         }
     }

@@ -1294,6 +1294,8 @@ const NO_DEPTH: f32 = 1e30;
 const MAX_SPREAD_TANGENT: f32 = 1.7320508;
 const MAX_STEPS: u32 = 2000u;
 const REFINEMENTS: u32 = 4u;
+const EAGERNESS: f32 = 1.95;
+const ROOM: f32 = 0.98;
 const MAX_NODES: i32 = 16384;
 const LAST_NODE: f32 = 4194304.0;
 const SHOWS_NORMALS: f32 = 2.0;
@@ -1639,6 +1641,17 @@ struct Near {
     solid: u32,
     gap: f32,
     rest: f32,
+    entry: f32,
+    leave: f32,
+}
+
+// A ray on its way: how far it is, where it was one step earlier, how far nothing could be from there, and whether it
+// went farther than that.
+struct Walker {
+    t: f32,
+    before: f32,
+    free: f32,
+    guessed: bool,
 }
 
 struct Contact {
@@ -1739,7 +1752,7 @@ fn nearest(
     t: f32,
     before: f32,
 ) -> Near {
-    var near = Near(FAR, FAR, 0u, FAR, 0.0);
+    var near = Near(FAR, FAR, 0u, FAR, 0.0, FAR, FAR);
     // What was near without the parts of a union that holds the eye, and the farthest wall of those: a ray is
     // inside as long as it is in one of them.
     var others = near;
@@ -1754,8 +1767,12 @@ fn nearest(
         let some = span.entry <= span.leave;
         let ahead = some & (t < span.entry);
         near.gap = select(near.gap, min(near.gap, span.entry - t), ahead);
+        near.entry = select(near.entry, min(near.entry, span.entry), ahead);
         if (some & (t >= span.entry) & (t <= span.leave)) {
             near.rest = max(near.rest, span.leave - t);
+            // A solid with a bound along rays alone tells nothing of what is beside the way.
+            let is_ball = vol_frame_word(object_word(solid) + 7u) != BY_STEEPNESS;
+            near.leave = min(near.leave, select(0.0, span.leave, is_ball));
             // Keep the smallest distance; the earlier solid on a tie.
             let seen = (*sides)[solid] * object_distance(solid, ray_at(ray, t));
             let safe = shorten(solid, ray, t, t - before, seen);
@@ -1775,10 +1792,37 @@ fn nearest(
 // goes through what is left of the boxes in even steps.
 fn advance(near: Near, step: u32, least: f32) -> f32 {
     let free = min(near.distance, near.gap);
-    let stuck = step > (MAX_STEPS / 2u);
     let left = f32((MAX_STEPS - step) + 1u);
-    let even = select(0.0, min(near.rest / left, near.gap), stuck);
+    let even = select(0.0, min(near.rest / left, near.gap), is_stuck(step));
     return max(max(free, least), even);
+}
+
+fn is_stuck(step: u32) -> bool {
+    return step > (MAX_STEPS / 2u);
+}
+
+// Goes on, if possible farther than is sure: runtime-cpu/src/render/near.rs says why.
+fn onward(near: Near, walker: Walker, step: u32, least: f32) -> Walker {
+    let sure = advance(near, step, least);
+    let last = walker.t - walker.before;
+    let is_first = last <= 0.0;
+    let fall = max((walker.free - near.distance) / select(last, 1.0, is_first), 0.0);
+    let touching = (EAGERNESS * near.distance) / (1.0 + fall);
+    let guess = min(min(touching, ROOM * near.gap), ROOM * (near.leave - walker.t));
+    let place = walker.t + guess;
+    let is_inside = (place < near.entry) & (place <= near.leave);
+    let guessed = (guess > sure) & is_inside & !is_first & !is_stuck(step);
+    return Walker(select(walker.t + sure, place, guessed), walker.t, sure, guessed);
+}
+
+// Whether a walker has gone too far: the balls that are empty around this place and the last do not touch.
+fn is_past(near: Near, walker: Walker) -> bool {
+    return walker.guessed & ((walker.free + near.distance) < (walker.t - walker.before));
+}
+
+// Goes back to where it was sure to come.
+fn back(walker: Walker) -> Walker {
+    return Walker(walker.before + walker.free, walker.before, walker.free, false);
 }
 
 // First surface on the ray.
@@ -1787,25 +1831,27 @@ fn trace(ray: Ray) -> Contact {
     var spans: array<Span, OBJECT_SLOTS>;
     find_sides(&sides);
     object_spans(ray, &sides, &spans);
-    var t = 0.0;
-    var before = 0.0;
+    var walker = Walker(0.0, 0.0, 0.0, false);
     var hit = false;
     var solid = 0u;
     for (var count = 1u; count <= MAX_STEPS; count++) {
-        let near = nearest(ray, &spans, &sides, t, before);
+        let near = nearest(ray, &spans, &sides, walker.t, walker.before);
+        if (is_past(near, walker)) {
+            walker = back(walker);
+            continue;
+        }
         // Stop inside a solid; on the last step also where it would have been near enough.
-        hit = near.value < select(0.0, tolerance(t), count == MAX_STEPS);
+        hit = near.value < select(0.0, tolerance(walker.t), count == MAX_STEPS);
         solid = near.solid;
         // Walk as far as nothing can be, at least a fortieth of a pixel.
-        let next = t + advance(near, count, stride(t));
-        if (hit | (next >= FAR)) {
+        let next = onward(near, walker, count, stride(walker.t));
+        if (hit | (next.t >= FAR)) {
             break;
         }
-        before = t;
-        t = next;
+        walker = next;
     }
     if (hit) {
-        return refine(ray, solid, before, t, sides[solid]);
+        return refine(ray, solid, walker.before, walker.t, sides[solid]);
     }
     return Contact(false, 0u, FAR, vec3f(0.0), vec3f(0.0), 0.0);
 }
@@ -2020,16 +2066,18 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     no_sides(&sides);
     object_spans(ray, &sides, &spans);
     let end = min(distance, FAR);
-    var t = 0.0;
-    var before = 0.0;
+    var walker = Walker(0.0, 0.0, 0.0, false);
     var inside = false;
     for (var count = 1u; count <= MAX_STEPS; count++) {
+        let near = nearest(ray, &spans, &sides, walker.t, walker.before);
+        if (is_past(near, walker)) {
+            walker = back(walker);
+            continue;
+        }
         // Only the inside of a solid hides: a ray may leave a surface at a grazing angle.
-        let near = nearest(ray, &spans, &sides, t, before);
-        inside = enters(near.distance, t, least);
-        before = t;
-        t += advance(near, count, least);
-        if (inside | (t >= end)) {
+        inside = enters(near.distance, walker.t, least);
+        walker = onward(near, walker, count, least);
+        if (inside | (walker.t >= end)) {
             break;
         }
     }

@@ -25,7 +25,7 @@ pub enum Carried {
     Both,
 }
 
-/// How a step is joined to its neighbours. Means something for simple steps alone, see [`TapeOp::is_simple`].
+/// How a step is joined to its neighbours. Means something for simple steps alone, see [`is_simple`](super::is_simple).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Link {
     /// What it has from the step before. A third operand is always read from its register.

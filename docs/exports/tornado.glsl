@@ -1070,21 +1070,8 @@ Vol_CurvePoint vol_closest(vec3 point_1, Vol_Curve curve_2) {
     return _e22;
 }
 
-vec2 vol_f0_radius_slope(float x0_, float x1_) {
-    float v3_ = (x0_ + x0_);
-    float v4_ = (0.52 * v3_);
-    return vec2(v4_, 0.0);
-}
-
-float vol_f1_radius(float x0_1, float x1_1) {
-    float v3_1 = (x0_1 * x0_1);
-    float v4_1 = (v3_1 * 0.52);
-    float v5_ = (0.08 + v4_1);
-    return v5_;
-}
-
-float vol_f2_region_cloud(float x0_2, float x1_2, float x2_) {
-    Vol_CurvePoint _e17 = vol_closest(vec3(x0_2, x1_2, x2_), Vol_Curve(0u, 2u, 0u));
+float vol_f2_region_cloud(float x0_, float x1_, float x2_) {
+    Vol_CurvePoint _e17 = vol_closest(vec3(x0_, x1_, x2_), Vol_Curve(0u, 2u, 0u));
     float v13_ = _e17.t;
     float v14_ = _e17.arc_length;
     float v15_ = _e17.curve_length;
@@ -1114,8 +1101,8 @@ float vol_f2_region_cloud(float x0_2, float x1_2, float x2_) {
     return v40_;
 }
 
-Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1) {
-    Vol_CurvePoint _e14 = vol_closest(vec3(x0_3, x1_3, x2_1), Vol_Curve(0u, 2u, 0u));
+Vol_Out10_ vol_f3_interior_cloud(float x0_1, float x1_1, float x2_1) {
+    Vol_CurvePoint _e14 = vol_closest(vec3(x0_1, x1_1, x2_1), Vol_Curve(0u, 2u, 0u));
     float v10_ = _e14.t;
     float v11_ = _e14.arc_length;
     float v12_ = _e14.x;
@@ -1146,8 +1133,8 @@ Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1) {
     return Vol_Out10_(v45_, 0.7912979, 0.8307699, 1.0, 0.94129795, 0.9807699, 1.15, 0.0, 0.0, 0.0);
 }
 
-vec4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2) {
-    Vol_CurvePoint _e12 = vol_closest(vec3(x0_4, x1_4, x2_2), Vol_Curve(0u, 2u, 0u));
+vec4 vol_f4_extinction_cloud(float x0_2, float x1_2, float x2_2) {
+    Vol_CurvePoint _e12 = vol_closest(vec3(x0_2, x1_2, x2_2), Vol_Curve(0u, 2u, 0u));
     float v8_ = _e12.t;
     float v9_ = _e12.arc_length;
     float v10_1 = _e12.x;
@@ -1178,25 +1165,18 @@ vec4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2) {
     return vec4(v43_, 0.94129795, 0.9807699, 1.15);
 }
 
-float vol_f5_phase_cloud(float x0_5, float x1_5) {
-    float v3_2 = (0.6 * x0_5);
-    float v4_2 = (0.49 + v3_2);
-    float v5_1 = sqrt(((v4_2 > 0.0) ? v4_2 : 0.0));
-    float v6_ = (v4_2 * v5_1);
+float vol_f5_phase_cloud(float x0_3, float x1_3) {
+    float v3_ = (0.6 * x0_3);
+    float v4_ = (0.49 + v3_);
+    float v5_ = sqrt(((v4_ > 0.0) ? v4_ : 0.0));
+    float v6_ = (v4_ * v5_);
     float v8_1 = (12.566371 * v6_);
     float v10_2 = (0.91 / v8_1);
     return v10_2;
 }
 
-float vol_f6_radius(float x0_6, float x1_6) {
-    float v3_3 = (x0_6 * x0_6);
-    float v4_3 = (v3_3 * 0.52);
-    float v5_2 = (0.08 + v4_3);
-    return v5_2;
-}
-
-float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3) {
-    Vol_CurvePoint _e19 = vol_closest(vec3(x0_7, x1_7, x2_3), Vol_Curve(0u, 2u, 0u));
+float vol_f7_density_cloud(float x0_4, float x1_4, float x2_3) {
+    Vol_CurvePoint _e19 = vol_closest(vec3(x0_4, x1_4, x2_3), Vol_Curve(0u, 2u, 0u));
     float v15_2 = _e19.t;
     float v16_3 = _e19.arc_length;
     float v17_1 = _e19.curve_length;
@@ -1250,12 +1230,12 @@ float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3) {
     return v74_;
 }
 
-vec3 vol_f8_colour_cloud(float x0_8, float x1_8, float x2_4) {
+vec3 vol_f8_colour_cloud(float x0_5, float x1_5, float x2_4) {
     return vec3(0.7912979, 0.8307699, 1.0);
 }
 
-vec3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5) {
-    Vol_CurvePoint _e10 = vol_closest(vec3(x0_9, x1_9, x2_5), Vol_Curve(0u, 2u, 0u));
+vec3 vol_f9_local_cloud(float x0_6, float x1_6, float x2_5) {
+    Vol_CurvePoint _e10 = vol_closest(vec3(x0_6, x1_6, x2_5), Vol_Curve(0u, 2u, 0u));
     float v6_1 = _e10.t;
     float v7_ = _e10.arc_length;
     float v8_2 = _e10.x;

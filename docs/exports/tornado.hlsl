@@ -1375,21 +1375,6 @@ Vol_CurvePoint vol_closest(float3 point_1, Vol_Curve curve_2)
     return vol_curvepoint_2;
 }
 
-float2 vol_f0_radius_slope(float x0_, float x1_)
-{
-    float v3_ = (x0_ + x0_);
-    float v4_ = (0.52 * v3_);
-    return float2(v4_, 0.0);
-}
-
-float vol_f1_radius(float x0_1, float x1_1)
-{
-    float v3_1 = (x0_1 * x0_1);
-    float v4_1 = (v3_1 * 0.52);
-    float v5_ = (0.08 + v4_1);
-    return v5_;
-}
-
 Vol_Curve ConstructVol_Curve(uint arg0, uint arg1, uint arg2) {
     Vol_Curve ret = (Vol_Curve)0;
     ret.first = arg0;
@@ -1398,9 +1383,9 @@ Vol_Curve ConstructVol_Curve(uint arg0, uint arg1, uint arg2) {
     return ret;
 }
 
-float vol_f2_region_cloud(float x0_2, float x1_2, float x2_)
+float vol_f2_region_cloud(float x0_, float x1_, float x2_)
 {
-    const Vol_CurvePoint _e17 = vol_closest(float3(x0_2, x1_2, x2_), ConstructVol_Curve(0u, 2u, 0u));
+    const Vol_CurvePoint _e17 = vol_closest(float3(x0_, x1_, x2_), ConstructVol_Curve(0u, 2u, 0u));
     float v13_ = _e17.t;
     float v14_ = _e17.arc_length;
     float v15_ = _e17.curve_length;
@@ -1445,9 +1430,9 @@ Vol_Out10_ ConstructVol_Out10_(float arg0, float arg1, float arg2, float arg3, f
     return ret;
 }
 
-Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1)
+Vol_Out10_ vol_f3_interior_cloud(float x0_1, float x1_1, float x2_1)
 {
-    const Vol_CurvePoint _e14 = vol_closest(float3(x0_3, x1_3, x2_1), ConstructVol_Curve(0u, 2u, 0u));
+    const Vol_CurvePoint _e14 = vol_closest(float3(x0_1, x1_1, x2_1), ConstructVol_Curve(0u, 2u, 0u));
     float v10_ = _e14.t;
     float v11_ = _e14.arc_length;
     float v12_ = _e14.x;
@@ -1479,9 +1464,9 @@ Vol_Out10_ vol_f3_interior_cloud(float x0_3, float x1_3, float x2_1)
     return vol_out10_;
 }
 
-float4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2)
+float4 vol_f4_extinction_cloud(float x0_2, float x1_2, float x2_2)
 {
-    const Vol_CurvePoint _e12 = vol_closest(float3(x0_4, x1_4, x2_2), ConstructVol_Curve(0u, 2u, 0u));
+    const Vol_CurvePoint _e12 = vol_closest(float3(x0_2, x1_2, x2_2), ConstructVol_Curve(0u, 2u, 0u));
     float v8_ = _e12.t;
     float v9_ = _e12.arc_length;
     float v10_1 = _e12.x;
@@ -1512,28 +1497,20 @@ float4 vol_f4_extinction_cloud(float x0_4, float x1_4, float x2_2)
     return float4(v43_, 0.94129795, 0.9807699, 1.15);
 }
 
-float vol_f5_phase_cloud(float x0_5, float x1_5)
+float vol_f5_phase_cloud(float x0_3, float x1_3)
 {
-    float v3_2 = (0.6 * x0_5);
-    float v4_2 = (0.49 + v3_2);
-    float v5_1 = sqrt(((v4_2 > 0.0) ? v4_2 : 0.0));
-    float v6_ = (v4_2 * v5_1);
+    float v3_ = (0.6 * x0_3);
+    float v4_ = (0.49 + v3_);
+    float v5_ = sqrt(((v4_ > 0.0) ? v4_ : 0.0));
+    float v6_ = (v4_ * v5_);
     float v8_1 = (12.566371 * v6_);
     float v10_2 = (0.91 / v8_1);
     return v10_2;
 }
 
-float vol_f6_radius(float x0_6, float x1_6)
+float vol_f7_density_cloud(float x0_4, float x1_4, float x2_3)
 {
-    float v3_3 = (x0_6 * x0_6);
-    float v4_3 = (v3_3 * 0.52);
-    float v5_2 = (0.08 + v4_3);
-    return v5_2;
-}
-
-float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3)
-{
-    const Vol_CurvePoint _e19 = vol_closest(float3(x0_7, x1_7, x2_3), ConstructVol_Curve(0u, 2u, 0u));
+    const Vol_CurvePoint _e19 = vol_closest(float3(x0_4, x1_4, x2_3), ConstructVol_Curve(0u, 2u, 0u));
     float v15_2 = _e19.t;
     float v16_3 = _e19.arc_length;
     float v17_1 = _e19.curve_length;
@@ -1587,14 +1564,14 @@ float vol_f7_density_cloud(float x0_7, float x1_7, float x2_3)
     return v74_;
 }
 
-float3 vol_f8_colour_cloud(float x0_8, float x1_8, float x2_4)
+float3 vol_f8_colour_cloud(float x0_5, float x1_5, float x2_4)
 {
     return float3(0.7912979, 0.8307699, 1.0);
 }
 
-float3 vol_f9_local_cloud(float x0_9, float x1_9, float x2_5)
+float3 vol_f9_local_cloud(float x0_6, float x1_6, float x2_5)
 {
-    const Vol_CurvePoint _e10 = vol_closest(float3(x0_9, x1_9, x2_5), ConstructVol_Curve(0u, 2u, 0u));
+    const Vol_CurvePoint _e10 = vol_closest(float3(x0_6, x1_6, x2_5), ConstructVol_Curve(0u, 2u, 0u));
     float v6_1 = _e10.t;
     float v7_ = _e10.arc_length;
     float v8_2 = _e10.x;

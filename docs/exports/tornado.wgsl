@@ -998,27 +998,6 @@ struct Vol_Out10 {
   v9: f32,
 }
 
-// radius slope
-fn vol_f0_radius_slope(x0: f32, x1: f32) -> vec2f {
-  let v0: f32 = 0.0f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 + x0);
-  let v4: f32 = (v1 * v3);
-  return vec2f(v4, v0);
-}
-
-// radius
-fn vol_f1_radius(x0: f32, x1: f32) -> f32 {
-  let v0: f32 = 0.08f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 * x0);
-  let v4: f32 = (v3 * v1);
-  let v5: f32 = (v0 + v4);
-  return v5;
-}
-
 // region:cloud
 fn vol_f2_region_cloud(x0: f32, x1: f32, x2: f32) -> f32 {
   let v0: f32 = 0.0f;
@@ -1194,17 +1173,6 @@ fn vol_f5_phase_cloud(x0: f32, x1: f32) -> f32 {
   let v9: f32 = 0.91f;
   let v10: f32 = (v9 / v8);
   return v10;
-}
-
-// radius
-fn vol_f6_radius(x0: f32, x1: f32) -> f32 {
-  let v0: f32 = 0.08f;
-  let v1: f32 = 0.52f;
-  // tornado.vol:8: region:  tube(spine, radius: t => mix(0.08, 0.6, t * t), twist: t => 0.8turn * t - spin * time)
-  let v3: f32 = (x0 * x0);
-  let v4: f32 = (v3 * v1);
-  let v5: f32 = (v0 + v4);
-  return v5;
 }
 
 // density:cloud

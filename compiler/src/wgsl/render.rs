@@ -155,12 +155,7 @@ fn module_text(
 ) -> String {
     let rows = SceneRows::of(program);
     let bindings: String = [frame_row(program), input_row()].iter().map(Row::declaration).collect();
-    let (families, called) = (Families::of(program), glue::called(program));
-    // Others may call fields, too.
-    let fields: BTreeSet<FunctionId> =
-        program.fields.iter().filter(|_| notes.is_some()).map(|field| field.function).collect();
-    let is_asked = |id| fields.contains(&id) || (called.contains(&id) && families.number_of(id).is_none());
-    let functions = super::functions(program, &rows, notes, &is_asked);
+    let functions = asked_functions(program, &rows, notes);
     [
         &format!("{BINDINGS}\n{}{bindings}", super::declarations(&rows)),
         &functions,
@@ -170,6 +165,15 @@ fn module_text(
     ]
     .map(String::as_str)
     .join("\n")
+}
+
+/// The functions that the integrator calls, and where there are notes the fields, which others may call.
+fn asked_functions(program: &Program, rows: &SceneRows<'_>, notes: Option<&Notes<'_>>) -> String {
+    let (families, called) = (Families::of(program), glue::called(program));
+    let fields: BTreeSet<FunctionId> =
+        program.fields.iter().filter(|_| notes.is_some()).map(|field| field.function).collect();
+    let is_asked = |id| fields.contains(&id) || (called.contains(&id) && families.number_of(id).is_none());
+    super::functions(program, rows, notes, &is_asked)
 }
 
 /// A program at one moment as functions without bindings and without entry points: what is a buffer elsewhere is a
@@ -198,7 +202,7 @@ pub(crate) fn library_text(
     numbers.truncate(numbers.iter().rposition(|&word| word != 0).map_or(0, |last| last + 1));
     text += &frame_row(program).constants(&numbers, keyword);
     text += &input_row().constants(&input_words(program, frame), keyword);
-    let functions = super::functions(program, &rows, Some(notes), &|_| true);
+    let functions = asked_functions(program, &rows, Some(notes));
     if functions.contains("vol_place_word(") {
         let (row, words) = rows.place_row();
         text += &row.constants(&words, keyword);

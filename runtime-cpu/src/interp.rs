@@ -313,20 +313,30 @@ impl<const WIDTH: usize> VectorKernel for Simple<WIDTH> {
     #[inline(always)]
     fn run<S: Simd>(simd: S, (chunks, all): Self::Args<'_>) -> usize {
         let vectors = WIDTH * bank::CHUNK / S::F32_LANES;
-        match vectors {
-            1 => walk::<S, 1>(simd, chunks, &all, 0, 1),
-            2 => walk::<S, 2>(simd, chunks, &all, 0, 1),
-            4 => walk::<S, 4>(simd, chunks, &all, 0, 1),
-            // More than the machine has registers for go one part after the other.
-            _ => {
-                let (parts, mut done) = (vectors / 8, 0);
-                for part in 0..parts {
-                    done = walk::<S, 8>(simd, chunks, &all, part, parts);
-                }
-                done
-            }
+        // More than the machine has registers for go one part after the other.
+        match (vectors, S::F32_LANES) {
+            (1, _) => walk_parts::<S, 1>(simd, chunks, &all, 1),
+            (2, _) => walk_parts::<S, 2>(simd, chunks, &all, 1),
+            (4, _) => walk_parts::<S, 4>(simd, chunks, &all, 1),
+            (_, 4) => walk_parts::<S, 4>(simd, chunks, &all, vectors / 4),
+            _ => walk_parts::<S, 8>(simd, chunks, &all, vectors / 8),
         }
     }
+}
+
+/// The same on all parts of the rows, so many.
+#[inline(always)]
+fn walk_parts<S: Simd, const VECTORS: usize>(
+    simd: S,
+    chunks: &mut [Chunk],
+    all: &Steps<'_>,
+    parts: usize,
+) -> usize {
+    let mut done = 0;
+    for part in 0..parts {
+        done = walk::<S, VECTORS>(simd, chunks, all, part, parts);
+    }
+    done
 }
 
 /// The same on one of so many parts of the rows. The result of the last step stays in the registers of the machine.

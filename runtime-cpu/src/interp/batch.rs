@@ -7,7 +7,7 @@
 mod curve;
 mod noise;
 #[cfg(target_arch = "x86_64")]
-mod registers;
+mod permutation;
 
 use super::LANES;
 use crate::isa::{Isa, kernel};

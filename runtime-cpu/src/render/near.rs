@@ -1,9 +1,15 @@
-//! What is around the rays of a batch where they are: the distance to the nearest solid and to the next box.
+//! What is around the rays of a batch where they are, the distance to the nearest solid and to the next box, and how far
+//! they go on.
+//!
+//! ```text
+//! Walkers::new ──► nearest ──► Walkers::go ──► nearest ──► …      until all have stopped
+//!   boxes of each ray, in order   a step of each ray: sure (Near::advance) or farther (Near::onward)
+//! ```
 //!
 //! Where one part of a union holds the eye ([`Joined`]) all parts are seen from within, and the ray is in the union as
 //! long as it is in one of them.
 //!
-//! Twin: `nearest` in `compiler/src/wgsl/render/surface.wgsl`.
+//! Twin: `nearest`, `advance`, `onward` in `compiler/src/wgsl/render/surface.wgsl`.
 
 use super::box_tree::Answer;
 use super::camera::{FAR, Ray, Span};

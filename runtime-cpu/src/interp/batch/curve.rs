@@ -113,6 +113,7 @@ fn values(found: &CurvePoint) -> [f32; MAX_RESULTS] {
     let CurvePoint { t, arc_length, curve_length, x, y, distance, overshoot, stretch } = *found;
     [t, arc_length, curve_length, x, y, distance, overshoot, stretch]
 }
+
 /// Describes the foot in the first `n` lanes, each on a piece of its own: of the results those in `WANTED`.
 struct DescribeOwn<const WANTED: u8>;
 

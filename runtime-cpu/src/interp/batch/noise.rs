@@ -4,7 +4,7 @@
 //! loops are turned around so that the lanes vectorise.
 
 #[cfg(target_arch = "x86_64")]
-use super::registers::LookUp;
+use super::permutation::LookUp;
 use super::{LANES, Operands, Out};
 use crate::isa::{Isa, Kernel, kernel};
 use crate::math::noise::{self, Nearest, next_octave, octave_count};

@@ -12,7 +12,7 @@ mod tube;
 
 pub use extent::MOST_CELLS;
 pub use inputs::Inputs;
-pub use light_grid::LightGrid;
+pub use light_grid::{GridColumn, LightGrid};
 
 use crate::curve::{self, CurveTable, Quadratic};
 use crate::ir::FunctionId;

@@ -56,6 +56,7 @@ mod scene;
 mod shade;
 mod shadow;
 mod spread;
+mod step_choice;
 mod stride;
 mod styled;
 mod surface;
@@ -70,16 +71,16 @@ pub use filled_grids::FilledGrids;
 pub use grid_choice::{Choice, GridChoice, choose, choose_light_grids, choose_with};
 pub use memory::memory_bound;
 pub use method::{Method, NoMajorant, TubeBounds, fixed_step_default, render_by};
-pub use pilot::{StepChoice, choose_step, least_step};
+
 pub use profile::{Profile, profile};
 pub use spread::spread_pixels;
+pub use step_choice::{StepChoice, choose_step, least_step};
 
 pub(crate) use camera::{FAR, Ray, camera_ray};
 pub(crate) use fields::Batch;
-pub(crate) use filled_grids::filling_bytes;
 #[cfg(test)]
 pub(crate) use light_grid::Grid as LightDepths;
-pub(crate) use light_grid::fill as fill_light_grid;
+pub(crate) use light_grid::{fill as fill_light_grid, filling_bytes};
 pub(crate) use scene::{Batches, Integrator, Scene};
 pub(crate) use shadow::ShadowRay;
 pub(crate) use styled::{NO_DEPTH, transfer_color};

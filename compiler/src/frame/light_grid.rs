@@ -7,7 +7,8 @@
 //! * A light at a place sees directions: `(u, v)` are tangents on both sides of its axis, `w` is the
 //!   distance from it.
 //!
-//! Columns of the grid are rays of the light in both. Everything is measured with the rounded axes, so
+//! Columns of the grid are rays of the light in both. Of a column only the depths from where it meets media to where it
+//! leaves them are kept: a bent tube fills a tenth of its box. Everything is measured with the rounded axes, so
 //! that the box is inside whatever rounding did.
 
 use super::{Aabb, LightFrame, round3};
@@ -35,9 +36,30 @@ pub struct LightGrid {
     /// Whether `depths` holds the coefficients of a cubic spline through the depths; else the depths themselves, between
     /// which a local cubic is put.
     pub spline: bool,
-    /// Optical depths from the light to each point, over `tint`: `w` runs fastest, then `v`; channels
-    /// together.
+    /// Which depths there are of each column, one after the other along `v`, then along `u`.
+    pub columns: Vec<GridColumn>,
+    /// Optical depths from the light to points of columns, over `tint`: along `w`, channels together.
     pub depths: Vec<f32>,
+}
+
+/// The points along `w` whose depths are kept. Before the first of them all depths are its own, and behind the last one
+/// that one's: outside of the media nothing is added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridColumn {
+    /// Number of the first point along `w`.
+    pub first: u32,
+    /// How many there are, at least 1.
+    pub count: u32,
+    /// Where the first one is in [`LightGrid::depths`]: a multiple of [`GridColumn::ALIGNMENT`].
+    pub at: u32,
+}
+
+impl GridColumn {
+    /// Columns begin at multiples of so many depths: so their places are exact in f32 up to 2^26.
+    pub const ALIGNMENT: usize = 4;
+
+    /// Words of a column beside its depths, where a grid is told to a shader.
+    pub const WORDS: usize = 3;
 }
 
 /// Tangent of the widest angle that a light at a place may see a box under, to either side.
@@ -129,6 +151,31 @@ impl LightGrid {
     #[must_use]
     pub fn points(&self) -> usize {
         self.counts.iter().map(|&count| count as usize).product()
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub fn column_count(&self) -> usize {
+        self.counts[0] as usize * self.counts[1] as usize
+    }
+
+    /// Depths of a point: 3, or 1 for all channels.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        if self.colored { 3 } else { 1 }
+    }
+
+    /// Words that columns and depths take: about the memory of a grid.
+    #[must_use]
+    pub fn words(&self) -> usize {
+        GridColumn::WORDS * self.columns.len() + self.depths.len()
+    }
+
+    /// The most words that a grid with these points and channels has.
+    #[must_use]
+    pub fn most_words(&self) -> usize {
+        let column = (self.counts[2] as usize * self.channels()).next_multiple_of(GridColumn::ALIGNMENT);
+        (GridColumn::WORDS + column) * self.column_count() + GridColumn::ALIGNMENT
     }
 }
 

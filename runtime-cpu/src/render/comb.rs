@@ -19,6 +19,7 @@ use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::{Integrator, Medium};
 use crate::real::{Real, add, splat, sub};
+use std::ops::RangeInclusive;
 use vol_compiler::frame::Quadrature;
 
 /// Most nodes of one ray: a medium without bounds ends after so many.
@@ -107,6 +108,12 @@ impl<R: Real> Combs<'_, R> {
     /// Distance of a node from the origin of its ray.
     pub(crate) fn distance(&self, ray: usize, node: i32) -> R {
         node_distance(node, self.step, self.offsets[ray])
+    }
+
+    /// From the first to the last node of a ray that may be inside some medium.
+    pub(super) fn nodes(&self, ray: usize) -> RangeInclusive<i32> {
+        let NodeRange { first, last } = self.whole[ray];
+        first..=last
     }
 
     /// The rays that have nodes, at their first one.

@@ -7,7 +7,7 @@
 use super::fields::Fields;
 use super::grid_choice::MAX_WORDS;
 use super::light_grid;
-use super::scene::{Batches, Scene};
+use super::scene::Scene;
 use std::sync::Arc;
 use vol_compiler::frame::{Frame, Inputs, LightGrid};
 use vol_compiler::program::Program;
@@ -23,13 +23,6 @@ pub struct FilledGrids {
     /// Most bytes that were needed at a time, here and while a grid was filled.
     most_bytes: usize,
 }
-
-/// Bytes of a point of a grid, in as many channels as it may have. There are two of each, a spline beside the depths, and each
-/// thread has those of a batch of columns.
-const PER_POINT: usize = 3 * size_of::<f32>();
-
-/// Bytes of a column meanwhile: its ray.
-const PER_COLUMN: usize = 32;
 
 #[derive(Debug)]
 struct Filled {
@@ -77,8 +70,8 @@ impl FilledGrids {
                 self.grids.remove(index)
             }
             None => {
-                self.count_bytes(&layout);
                 let (grid, evaluations) = light_grid::fill(layout, scene, fields)?;
+                self.count_bytes(&grid);
                 Filled { recipe, grid: Arc::new(grid), evaluations }
             }
         };
@@ -87,26 +80,21 @@ impl FilledGrids {
         // Those used longest ago go.
         let mut words = self.words();
         while words > MAX_WORDS && self.grids.len() > 1 {
-            words -= self.grids.remove(0).grid.depths.len();
+            words -= self.grids.remove(0).grid.words();
         }
         Some(found)
     }
 
     /// Words of all grids that are kept.
     fn words(&self) -> usize {
-        self.grids.iter().map(|filled| filled.grid.depths.len()).sum()
+        self.grids.iter().map(|filled| filled.grid.words()).sum()
     }
 
-    /// Counts what is there while one more grid is filled. Those of the frame may be gone from here.
-    fn count_bytes(&mut self, layout: &LightGrid) {
+    /// Counts what was there while one more grid was filled, and a spline put through it. Those of the frame may be gone
+    /// from here.
+    fn count_bytes(&mut self, grid: &LightGrid) {
         let kept = 2 * size_of::<f32>() * self.words();
-        self.most_bytes = self.most_bytes.max(kept + filling_bytes(layout));
+        let spline = if grid.most_words() > MAX_WORDS { 0 } else { light_grid::spline_bytes(grid) };
+        self.most_bytes = self.most_bytes.max(kept + light_grid::filling_bytes(grid, grid.words()) + spline);
     }
-}
-
-/// Most bytes of a grid while it is filled.
-pub(crate) fn filling_bytes(layout: &LightGrid) -> usize {
-    let [rows, more, points] = layout.counts.map(|count| count as usize);
-    let at_work = rayon::current_num_threads() * Batches::DEFAULT.rays * points * PER_POINT;
-    2 * PER_POINT * layout.points() + PER_COLUMN * rows * more + at_work
 }

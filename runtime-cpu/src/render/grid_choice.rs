@@ -10,8 +10,9 @@
 use super::fields::Batch;
 use super::filled_grids::FilledGrids;
 use super::light_grid::{self, Grid};
-use super::pilot::{MOST_BUDGET, Picture, Pilot, choose_steps, cost};
+use super::pilot::{MOST_BUDGET, Picture, Pilot, cost};
 use super::scene::{Medium, Scene};
+use super::step_choice::{Search, StepChoice};
 use crate::interp::Tapes;
 use std::sync::Arc;
 use vol_compiler::frame::{Aabb, Frame, Job, LightFrame, LightGrid, Sampling};
@@ -32,8 +33,11 @@ const EVALUATIONS_PER_NODE: f64 = 2.0;
 /// The step of the marching that a grid is compared with, over that of shadow rays.
 const TEST_STEP: f32 = 0.5;
 
-/// Part of the allowed error that a grid may have.
+/// Part of the allowed error that a grid is meant to have.
 const PART: f32 = 0.7;
+
+/// Part of it that the finest grid which can be had may use up. What a grid leaves is for the steps.
+const MOST_PART: f32 = 0.8;
 
 /// Part of that error which the next grid is meant to have, if the error falls with the square of the
 /// distance between points.
@@ -91,29 +95,40 @@ pub(super) fn choose_among(
     max_error: f32,
     filled: &mut FilledGrids,
 ) -> Vec<GridChoice> {
+    let tapes = Tapes::of_frame(program, frame);
+    choose_by(&Pilot::new(frame, &tapes, job.size), program, job, max_error, filled)
+}
+
+/// The same with a pilot of that frame.
+fn choose_by(
+    pilot: &Pilot<'_>,
+    program: &Program,
+    job: &Job,
+    max_error: f32,
+    filled: &mut FilledGrids,
+) -> Vec<GridChoice> {
+    let frame = pilot.frame;
     let mut choices = vec![GridChoice::default(); frame.lights.len()];
     let shadows = frame.lights.iter().any(|light| light.shadows);
     let scene = plain_scene(frame, job);
     let Some(bounds) = around(&scene.media).filter(|_| shadows) else {
         return choices;
     };
-    let tapes = Tapes::of_frame(program, frame);
-    let pilot = Pilot::new(frame, &tapes, job.size);
     let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
     let Some(((wanted, _), costs)) =
-        pilot.expose_scene(&fine, pilot.all(), LIMIT).zip(costs(frame, job, &pilot))
+        pilot.expose_scene(&fine, pilot.all(), LIMIT).zip(costs(frame, job, pilot))
     else {
         return choices;
     };
     filled.begin(program, frame);
     let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
+    // The errors of several lights add up like those of independent measurements.
+    let share = max_error / (asked.max(1) as f32).sqrt();
     let mut trial = Trial {
-        tapes: &tapes,
-        frame,
-        pilot: &pilot,
+        pilot,
         wanted,
-        // The errors of several lights add up like those of independent measurements.
-        target: PART * max_error / (asked.max(1) as f32).sqrt(),
+        target: PART * share,
+        most: MOST_PART * share,
         words: MAX_WORDS / asked.max(1),
         bounds,
         fine,
@@ -162,8 +177,6 @@ fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>) -> Option<Vec<f64>> {
 
 /// What the trials of all lights have in common.
 struct Trial<'a> {
-    tapes: &'a Tapes,
-    frame: &'a Frame,
     pilot: &'a Pilot<'a>,
     scene: Scene<f32>,
     /// The same with the step that grids are compared with.
@@ -172,8 +185,10 @@ struct Trial<'a> {
     bounds: Aabb,
     /// The pilot's rays with that step.
     wanted: Picture,
-    /// Error that a grid may have.
+    /// Error that a grid is meant to have.
     target: f32,
+    /// Error that the finest one may have.
+    most: f32,
     /// Words that a grid may have.
     words: usize,
     /// Grids that need not be filled.
@@ -184,24 +199,26 @@ impl Trial<'_> {
     /// Tries finer and finer grids for a light; `cost` is that of marching.
     fn choose(&mut self, light: usize, cost: f64) -> GridChoice {
         let mut choice = GridChoice::default();
-        let (mut spent, mut per_node, mut channels) = (0.0, EVALUATIONS_PER_NODE, 1);
+        let mut finest = None;
+        let (mut spent, mut per_node, mut per_point) = (0.0, EVALUATIONS_PER_NODE, 0.0);
         let mut intervals = FIRST_INTERVALS;
         loop {
-            let layout = LightGrid::layout(&self.frame.lights[light], &self.bounds, intervals);
+            let layout = LightGrid::layout(&self.pilot.frame.lights[light], &self.bounds, intervals);
             let nodes = layout.as_ref().and_then(|layout| light_grid::nodes(layout, self.scene.shadow_step));
             let (Some(layout), Some(nodes)) = (layout, nodes) else { break };
-            let words = layout.points() * channels;
+            // Finer columns keep no larger part of their points.
+            let words = (layout.points() as f64 * per_point) as usize;
             if spent + nodes as f64 * per_node > PAYS * cost || words > self.words {
                 break;
             }
-            let fields = || Batch::new(self.tapes, self.frame);
+            let fields = || Batch::new(self.pilot.tapes, self.pilot.frame);
             let Some((grid, evaluations)) = self.filled.fill(layout, &self.scene, fields) else { break };
             spent += evaluations as f64;
             per_node = evaluations as f64 / nodes as f64;
-            channels = if grid.colored { 3 } else { 1 };
+            per_point = grid.words() as f64 / grid.points() as f64;
             let (grid, error) = self.smoothed(light, grid);
             choice.error = Some(error);
-            let words = grid.depths.len();
+            let words = grid.words();
             let target = if grid.spline { self.target } else { LOCAL * self.target };
             if error <= target && words <= self.words {
                 choice.grid = Some(grid);
@@ -213,9 +230,14 @@ impl Trial<'_> {
             let most = if intervals < TELLING_INTERVALS { 2.0 } else { MOST_STEP };
             let finer = needed.clamp(LEAST_STEP, most).min(ROOM * room);
             if finer < LEAST_STEP || error > target * room.powi(BEST_ORDER) {
+                finest = Some(grid);
                 break;
             }
+            finest = Some(grid);
             intervals = (finer * intervals as f32) as u32;
+        }
+        if choice.grid.is_none() && choice.error.is_some_and(|error| error <= self.most) {
+            choice.grid = finest.filter(|grid| grid.words() <= self.words);
         }
         choice
     }
@@ -226,7 +248,7 @@ impl Trial<'_> {
         if error <= LOCAL * self.target || grid.counts.iter().all(|&count| count <= TELLING_INTERVALS) {
             return (grid, error);
         }
-        let spline = Arc::new(light_grid::splined(&grid));
+        let Some(spline) = light_grid::splined(&grid, self.words).map(Arc::new) else { return (grid, error) };
         let smooth = self.error(light, &spline);
         if smooth < BETTER * error { (spline, smooth) } else { (grid, error) }
     }
@@ -275,18 +297,21 @@ pub fn choose_with(
     max_error: f32,
     filled: &mut FilledGrids,
 ) -> Choice {
-    // What grids may add is left to them, where they are worth their while.
-    let [beside_grids, alone] =
-        choose_steps(program, frame, size, [(1.0 - PART * PART).sqrt() * max_error, max_error]);
-    let mut steps = alone;
-    let mut grids = vec![GridChoice::default(); frame.lights.len()];
-    if frame.lights.iter().any(|light| light.shadows) {
-        grids = choose_among(program, frame, &beside_grids.job(size, sampling), max_error, filled);
-        steps = if grids.iter().any(|choice| choice.grid.is_some()) { beside_grids } else { alone };
+    if frame.media.is_empty() {
+        let grids = vec![GridChoice::default(); frame.lights.len()];
+        frame.light_grids = vec![None; grids.len()];
+        return Choice { job: StepChoice::ANY.job(size, sampling), grids, estimate: 0.0 };
     }
+    let tapes = Tapes::of_frame(program, frame);
+    let pilot = Pilot::new(frame, &tapes, size);
+    // What grids may add is left to them, where they are worth their while; what they do not use is for the steps.
+    let beside = (1.0 - PART * PART).sqrt() * max_error;
+    let search = Search::new(&pilot, beside);
+    let grids = choose_by(&pilot, program, &search.choice(beside).job(size, sampling), max_error, filled);
+    let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
+    let taken = taken.fold(0.0, f32::hypot);
+    let steps = search.choice((max_error * max_error - taken * taken).sqrt());
     let job = steps.job(size, sampling);
     frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
-    let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
-    let estimate = taken.fold(steps.estimate, f32::hypot);
-    Choice { job, grids, estimate }
+    Choice { job, grids, estimate: steps.estimate.hypot(taken) }
 }

@@ -203,7 +203,11 @@ fn depths_layout(frame: &Frame, light: &LightFrame) -> Option<(LightGrid, Aabb)>
 pub(crate) fn most_bytes(frame: &Frame) -> usize {
     let fitted = frame.styles.iter().filter(|style| style.light_map.is_some());
     let layouts = fitted.filter_map(|style| depths_layout(frame, &frame.lights[style.light]));
-    layouts.map(|(layout, _)| filling_bytes(&layout)).max().unwrap_or(0)
+    let most = layouts.map(|(layout, _)| {
+        let layout = LightGrid { colored: true, ..layout };
+        filling_bytes(&layout, layout.most_words())
+    });
+    most.max().unwrap_or(0)
 }
 
 /// The frame from a camera, its light with the style's occluders and nothing else of the style.

@@ -2,7 +2,8 @@ use super::words::{HEADER_WORDS, INFINITE, LIGHT_WORDS, MEDIUM_WORDS, OBJECT_WOR
 use super::*;
 use crate::families::KeptFamilies;
 use crate::frame::{
-    Aabb, CameraFrame, Counts, LightFrame, LightGrid, MediumFrame, ObjectFrame, Quadrature, Sampling, Stride,
+    Aabb, CameraFrame, Counts, GridColumn, LightFrame, LightGrid, MediumFrame, ObjectFrame, Quadrature,
+    Sampling, Stride,
 };
 use crate::ir::FunctionId;
 use crate::ir::text;
@@ -211,7 +212,10 @@ fn grids_stand_where_the_records_say() {
         let colored = depths.len() > 20;
         let (distant, origin, axes) = (true, [1.0; 3], [a, b, c]);
         let (lo, scale, spline) = ([5.0; 3], [6.0; 3], colored);
-        let grid = LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, spline, depths };
+        let column = |at: u32| GridColumn { first: 1, count: 3, at };
+        let columns = [0, 4, 8, 12].map(column).to_vec();
+        let grid =
+            LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, spline, columns, depths };
         Some(std::sync::Arc::new(grid))
     };
     frame.light_grids = vec![grid(vec![7.0; 20]), None, grid(vec![9.0; 60])];
@@ -234,9 +238,15 @@ fn grids_stand_where_the_records_say() {
         assert_eq!([19, 20, 21, 22, 24, 25].map(|at| word(record + at)), [2.0, 2.0, 5.0, 0.5, 2.0, channels]);
         assert_eq!(word(record + 27), f32::from(u8::from(channels > 1.0)), "a spline");
         let first = word(record + 26) as usize;
-        assert_eq!((first % 64, depth_at(first), depth_at(first + count - 1)), (0, depth, depth));
+        // Four columns of three words, then the depths.
+        assert_eq!(first % 64, 0);
+        for column in 0..4 {
+            let words = [0, 1, 2].map(|word| depth_at(first + 3 * column + word));
+            assert_eq!(words, [1.0, 2.0, (3 + column) as f32]);
+        }
+        assert_eq!([first + 12, first + 11 + count].map(depth_at), [depth; 2]);
     }
-    assert_eq!(depths.len(), word(last + 26) as usize + 60);
+    assert_eq!(depths.len(), word(last + 26) as usize + 12 + 60);
 }
 
 #[test]

@@ -20,20 +20,24 @@
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
 //! | 27 + 8 objects | `AT_MEDIA` | 8 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, number of its cells |
 //! | after them | `AT_LIGHTS` | 12 words per light of the program, those of the frame first: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none), word of its style's record (0: none) |
-//! | after them | `AT_GRIDS` | 28 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first depth in `vol_input`, whether it is a spline |
+//! | after them | `AT_GRIDS` | 28 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first column in `vol_input`, whether it is a spline |
 //! | after them | | records of the program's styles, those of the frame's lights first, see [`styles`] |
 //! | after them | `AT_CELLS` | 64 cells per medium of the program, 6 words each, lo xyz, hi xyz; a medium without cells may be anywhere in its box |
 //!
 //! `vol_input`, binding 4, holds what may be long, [`input_words`]: the numbers of objects whose functions differ in them alone
-//! ([`crate::families`]), `ROW_WORDS` for each object of the program; the depths of the grids; then for each styled light slopes,
-//! transfer function, light map and means; each of these from a multiple of 64 words on.
+//! ([`crate::families`]), `ROW_WORDS` for each object of the program; the grids; then for each styled light slopes,
+//! transfer function, light map and means; each of these from a multiple of 64 words on. A grid has 3 words for each column, the
+//! number of its first point, how many follow that, and a quarter of the words from the grid's first one to the column's first
+//! depth; then, from a multiple of 4 words on, the depths.
 //!
 //! All words are f32; whole numbers, below 2^24, are exact, and no word is a denormal that a device
 //! might flush.
 
 use super::styles;
 use crate::families::Families;
-use crate::frame::{Aabb, Counts, Frame, Image, Job, LightGrid, MOST_CELLS, MediumFrame, Pixel, Stride};
+use crate::frame::{
+    Aabb, Counts, Frame, GridColumn, Image, Job, LightGrid, MOST_CELLS, MediumFrame, Pixel, Stride,
+};
 use crate::program::{Lighting, Program};
 use crate::wgsl::layout::Row;
 
@@ -58,7 +62,7 @@ pub(super) const CELLS_WORDS: usize = CELL_WORDS * MOST_CELLS;
 /// Words of a grid, without its depths.
 const GRID_WORDS: usize = 28;
 
-/// Depths begin at multiples of this many words: so their places are exact in f32 up to 2^30.
+/// Grids and tables begin at multiples of this many words: so their places are exact in f32 up to 2^30.
 pub(super) const GRID_ALIGNMENT: usize = 64;
 
 /// Words of `vol_output` per pixel.
@@ -212,26 +216,29 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
         styles_at += if style > 0 { styles::WORDS } else { 0 };
     }
     words.resize(places.grids, 0.0);
-    let mut depths_at = Families::of(program).word_count().next_multiple_of(GRID_ALIGNMENT);
+    let mut input_at = Families::of(program).word_count().next_multiple_of(GRID_ALIGNMENT);
     for grid in grids(frame) {
-        words.extend(grid_record(grid, depths_at));
-        depths_at += grid.depths.len().next_multiple_of(GRID_ALIGNMENT);
+        words.extend(grid_record(grid, input_at));
+        input_at += (depths_at(grid) + grid.depths.len()).next_multiple_of(GRID_ALIGNMENT);
     }
     words.resize(places.styles, 0.0);
     for light in styles::all(frame) {
-        words.extend(styles::record(program, light, &mut depths_at));
+        words.extend(styles::record(program, light, &mut input_at));
     }
     words.resize(places.cells, 0.0);
     words.extend(cells.as_flattened());
     frame_row(program).filled(words.into_iter().map(f32::to_bits).collect())
 }
 
-/// The contents of `vol_input`: numbers of objects, depths of grids, tables of styles.
+/// The contents of `vol_input`: numbers of objects, grids, tables of styles.
 #[must_use]
 pub fn input_words(program: &Program, frame: &Frame) -> Vec<u32> {
     let mut words: Vec<u32> = Families::of(program).words(frame).into_iter().map(f32::to_bits).collect();
     for grid in grids(frame) {
         words.resize(words.len().next_multiple_of(GRID_ALIGNMENT), 0);
+        let begin = words.len();
+        words.extend(grid.columns.iter().flat_map(|column| column_words(grid, column)).map(f32::to_bits));
+        words.resize(begin + depths_at(grid), 0);
         words.extend(grid.depths.iter().map(|depth| depth.to_bits()));
     }
     for table in styles::all(frame).flat_map(styles::tables) {
@@ -251,15 +258,25 @@ fn grids(frame: &Frame) -> impl Iterator<Item = &LightGrid> {
     (0..frame.lights.len()).filter_map(|light| grid_of(frame, light))
 }
 
-/// A grid without its depths, which begin at a word.
-fn grid_record(grid: &LightGrid, depths_at: usize) -> [f32; GRID_WORDS] {
+/// Words from the first column of a grid to the first depth.
+fn depths_at(grid: &LightGrid) -> usize {
+    (GridColumn::WORDS * grid.columns.len()).next_multiple_of(GridColumn::ALIGNMENT)
+}
+
+fn column_words(grid: &LightGrid, column: &GridColumn) -> [f32; GridColumn::WORDS] {
+    let at = (depths_at(grid) + column.at as usize) / GridColumn::ALIGNMENT;
+    [column.first as f32, (column.count - 1) as f32, at as f32]
+}
+
+/// A grid without its columns, which begin at a word.
+fn grid_record(grid: &LightGrid, columns_at: usize) -> [f32; GRID_WORDS] {
     let counts = grid.counts.map(|count| count as f32);
-    let channels = if grid.colored { 3.0 } else { 1.0 };
+    let channels = grid.channels() as f32;
     let [u, v, w] = grid.axes;
     let vectors = [grid.origin, u, v, w, grid.lo, grid.scale, counts, grid.tint];
     let flag = |is: bool| f32::from(u8::from(is));
     let all = [flag(grid.distant)].into_iter().chain(vectors.into_iter().flatten());
-    let all = all.chain([channels, depths_at as f32, flag(grid.spline)]);
+    let all = all.chain([channels, columns_at as f32, flag(grid.spline)]);
     let mut words = [0.0; GRID_WORDS];
     words.iter_mut().zip(all).for_each(|(word, value)| *word = value);
     words

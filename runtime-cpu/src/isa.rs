@@ -83,6 +83,18 @@ impl Isa {
         }
     }
 
+    /// Calls a loop over numbers of any kind compiled for these instructions.
+    #[inline(always)]
+    pub(crate) fn run_loop<L: Loop>(self, numbers: L) -> L::Out {
+        match self.0 {
+            Kind::Baseline => numbers.run(),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2(simd) => simd.vectorize(LoopCall(numbers)),
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512(simd) => simd.vectorize(LoopCall(numbers)),
+        }
+    }
+
     /// Calls a loop that is written for vectors of these instructions.
     #[inline(always)]
     pub(crate) fn run_vectors<K: VectorKernel>(self, args: K::Args<'_>) -> K::Out {
@@ -140,6 +152,28 @@ impl<K: Kernel> NullaryFnOnce for Call<'_, K> {
     #[inline(always)]
     fn call(self) -> K::Out {
         K::run(self.0)
+    }
+}
+
+/// A loop over rows of numbers that is written once for f32 and f64, to be called by
+/// [`Real::vectorized`](crate::real::Real::vectorized); its fields are what it reads and writes.
+pub(crate) trait Loop {
+    /// What it returns.
+    type Out;
+
+    /// The loop; inlined by force like [`Kernel::run`].
+    fn run(self) -> Self::Out;
+}
+
+/// Such a loop, as `pulp` wants it.
+struct LoopCall<L>(L);
+
+impl<L: Loop> NullaryFnOnce for LoopCall<L> {
+    type Output = L::Out;
+
+    #[inline(always)]
+    fn call(self) -> L::Out {
+        self.0.run()
     }
 }
 

@@ -4,7 +4,7 @@
 //! twin does, each rounded by itself; in f64 the elementary functions are those of the standard
 //! library, so the reference shares the integrator's rules but none of its approximations.
 
-use crate::isa::{Isa, kernel};
+use crate::isa::{Isa, Loop};
 use crate::math::fun;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -49,10 +49,8 @@ pub(crate) trait Real:
     fn log2(self) -> Self;
     /// exp(-x), x >= 0.
     fn decay(self) -> Self;
-    /// [`Real::decay`] of many numbers.
-    fn decays(x: &[Self], decays: &mut [Self]);
-    /// How many of many numbers are larger.
-    fn larger(self, others: &[f32]) -> u32;
+    /// Runs a loop over many numbers, for f32 with the widest instructions of the machine.
+    fn vectorized<L: Loop>(numbers: L) -> L::Out;
     /// (1 - exp(-x)) / x for x >= 0, 1 at 0: the mean transmittance over an optical depth x, of which exp(-x) is
     /// known.
     fn mean_decay(self, decay: Self) -> Self;
@@ -61,11 +59,13 @@ pub(crate) trait Real:
     fn decay_moment(self, decay: Self) -> Self;
 
     /// The smaller, the second on a tie.
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         if self < other { self } else { other }
     }
 
     /// The larger, the second on a tie.
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -80,6 +80,7 @@ impl Real for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
+    #[inline(always)]
     fn from_f32(value: f32) -> Self {
         value
     }
@@ -92,14 +93,17 @@ impl Real for f32 {
         f64::from(self)
     }
 
+    #[inline(always)]
     fn from_index(index: i32) -> Self {
         index as Self
     }
 
+    #[inline(always)]
     fn to_index(self) -> i32 {
         self as i32
     }
 
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
     }
@@ -108,6 +112,7 @@ impl Real for f32 {
         fun::atan2(self, x)
     }
 
+    #[inline(always)]
     fn floor(self) -> Self {
         self.floor()
     }
@@ -125,15 +130,11 @@ impl Real for f32 {
         fun::exp2(self * -std::f32::consts::LOG2_E)
     }
 
-    fn larger(self, others: &[f32]) -> u32 {
-        Isa::best().run::<Larger>((self, others))
+    fn vectorized<L: Loop>(numbers: L) -> L::Out {
+        Isa::best().run_loop(numbers)
     }
 
-    fn decays(x: &[Self], decays: &mut [Self]) {
-        Isa::best().run::<Decays>((x, decays));
-    }
-
-    #[inline]
+    #[inline(always)]
     fn mean_decay(self, decay: Self) -> Self {
         let x = self;
         if x < 0.35 {
@@ -145,7 +146,7 @@ impl Real for f32 {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn decay_moment(self, decay: Self) -> Self {
         let x = self;
         if x < 0.5 {
@@ -155,20 +156,6 @@ impl Real for f32 {
         } else {
             (x.mean_decay(decay) - decay) / x
         }
-    }
-}
-
-kernel! {
-    fn Decays<'a>((x, decays): (&'a [f32], &'a mut [f32])) {
-        for (decay, x) in decays.iter_mut().zip(x) {
-            *decay = x.decay();
-        }
-    }
-}
-
-kernel! {
-    fn Larger<'a>((least, others): (f32, &'a [f32])) -> u32 {
-        others.iter().map(|&other| u32::from(other > least)).sum()
     }
 }
 
@@ -220,12 +207,8 @@ impl Real for f64 {
         (-self).exp()
     }
 
-    fn larger(self, others: &[f32]) -> u32 {
-        others.iter().map(|&other| u32::from(Self::from(other) > self)).sum()
-    }
-
-    fn decays(x: &[Self], decays: &mut [Self]) {
-        decays.iter_mut().zip(x).for_each(|(decay, x)| *decay = x.decay());
+    fn vectorized<L: Loop>(numbers: L) -> L::Out {
+        numbers.run()
     }
 
     fn mean_decay(self, _: Self) -> Self {
@@ -246,10 +229,47 @@ impl Real for f64 {
     }
 }
 
+/// exp(-x) of many numbers x >= 0.
+pub(crate) struct Decays<'a, R> {
+    pub(crate) x: &'a [R],
+    pub(crate) decays: &'a mut [R],
+}
+
+impl<R: Real> Loop for Decays<'_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (decay, x) in self.decays.iter_mut().zip(self.x) {
+            *decay = x.decay();
+        }
+    }
+}
+
+/// How many of many numbers are larger than one.
+pub(crate) struct Larger<'a, R> {
+    pub(crate) than: R,
+    pub(crate) numbers: &'a [f32],
+}
+
+impl<R: Real> Loop for Larger<'_, R> {
+    type Out = u32;
+
+    #[inline(always)]
+    fn run(self) -> u32 {
+        let mut count = 0;
+        for &number in self.numbers {
+            count += u32::from(R::from_f32(number) > self.than);
+        }
+        count
+    }
+}
+
 /// A point, direction or colour.
 pub(crate) type Vec3<R> = [R; 3];
 
 /// All three components alike.
+#[inline(always)]
 pub(crate) fn splat<R: Real>(value: R) -> Vec3<R> {
     [value; 3]
 }
@@ -260,41 +280,49 @@ pub(crate) fn vector<R: Real>(v: [f32; 3]) -> Vec3<R> {
 }
 
 /// a + b
+#[inline(always)]
 pub(crate) fn add<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a - b
+#[inline(always)]
 pub(crate) fn sub<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// a * b, component by component.
+#[inline(always)]
 pub(crate) fn mul<R: Real>(a: Vec3<R>, b: Vec3<R>) -> Vec3<R> {
     [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
 /// v * k
+#[inline(always)]
 pub(crate) fn scale<R: Real>(v: Vec3<R>, k: R) -> Vec3<R> {
     [v[0] * k, v[1] * k, v[2] * k]
 }
 
 /// Sum of products, left to right.
+#[inline(always)]
 pub(crate) fn dot<R: Real>(a: Vec3<R>, b: Vec3<R>) -> R {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 /// Euclidean length.
+#[inline(always)]
 pub(crate) fn length<R: Real>(v: Vec3<R>) -> R {
     dot(v, v).sqrt()
 }
 
 /// The largest component.
+#[inline(always)]
 pub(crate) fn largest<R: Real>(v: Vec3<R>) -> R {
     v[0].max(v[1]).max(v[2])
 }
 
 /// The smallest component.
+#[inline(always)]
 pub(crate) fn smallest<R: Real>(v: Vec3<R>) -> R {
     v[0].min(v[1]).min(v[2])
 }

@@ -27,6 +27,7 @@ mod beam;
 mod box_tree;
 mod camera;
 mod chord;
+mod chunk;
 mod comb;
 mod corrected;
 mod cost;

@@ -29,22 +29,23 @@ const LEAST: f32 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gap<R> {
     which: usize,
-    slot: usize,
+    number: usize,
     ends: [[R; 2]; 2],
 }
 
 /// A short way through a medium.
 pub(super) struct Chord<R> {
     /// As of [`super::panel::Panel`].
-    pub(super) slot: usize,
+    pub(super) which: usize,
+    pub(super) number: usize,
     /// Where it begins and ends.
     pub(super) walls: [Crossing<R>; 2],
 }
 
 impl<R: Real> Gap<R> {
     /// If there may be an inside.
-    pub(super) fn new(which: usize, slot: usize, from: [R; 2], to: [R; 2]) -> Option<Self> {
-        let gap = Self { which, slot, ends: [from, to] };
+    pub(super) fn new(which: usize, number: usize, from: [R; 2], to: [R; 2]) -> Option<Self> {
+        let gap = Self { which, number, ends: [from, to] };
         (gap.room() > R::ZERO).then_some(gap)
     }
 
@@ -73,7 +74,7 @@ impl<R: Real> Gap<R> {
     /// The chord around a probe inside.
     fn chord(&self, t: R, value: R) -> Chord<R> {
         let wall = |outside| Crossing::new(self.which, [t, value], outside);
-        Chord { slot: self.slot, walls: self.ends.map(wall) }
+        Chord { which: self.which, number: self.number, walls: self.ends.map(wall) }
     }
 }
 

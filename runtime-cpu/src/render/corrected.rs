@@ -11,9 +11,10 @@
 //! Twin: `compiler/src/wgsl/render/corrected.wgsl`.
 
 use super::camera::Ray;
+use super::chunk::Chunk;
 use super::comb::{Combs, Cursor};
-use super::fields::{Fields, colors};
-use super::medium::{Chunk, EMISSION, EXTINCTION, Glow, SCATTERING};
+use super::fields::{Colors, Fields};
+use super::medium::{EXTINCTION, Glow};
 use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
@@ -37,7 +38,7 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
         glows: &[Glow<F::Real>],
     ) -> Chunk<F::Real> {
-        let mut chunk = Chunk::new(active.len() * self.batches.nodes as usize);
+        let mut chunk = Chunk::new(active.len(), self.batches.nodes as usize, self.scene.stop);
         // Find the panels and their optical depths, all media together.
         let mut all = Vec::with_capacity(self.scene.media.len());
         for medium in 0..self.scene.media.len() {
@@ -45,11 +46,12 @@ impl<F: Fields> Integrator<'_, F> {
             let panels: Panels<_, 10> = self.panels(medium, interior, rays, combs, active);
             self.stats.medium_samples += panels.places.len() as u64;
             for panel in &panels.list {
-                chunk.depth[panel.slot] = add(chunk.depth[panel.slot], panels.depth(panel, EXTINCTION));
+                let slot = chunk.slot_of(panel.which, panel.number);
+                chunk.depth.add(slot, panels.depth(panel, EXTINCTION));
             }
             all.push(panels);
         }
-        self.transmit(active, glows, &mut chunk);
+        chunk.transmit(active, glows);
         // Light their ends.
         let (mut fillings, mut lists) = (Vec::new(), Vec::new());
         for (medium, panels) in all.into_iter().enumerate() {
@@ -61,9 +63,11 @@ impl<F: Fields> Integrator<'_, F> {
         // Add up what they send.
         for (filling, list) in fillings.iter().zip(lists) {
             for panel in list {
-                let sources = panel.ends.map(|end| filling.source[end]);
-                let sent = sent(panel.masses, sources, chunk.depth[panel.slot], chunk.decay[panel.slot]);
-                chunk.sent[panel.slot] = add(chunk.sent[panel.slot], sent);
+                let slot = chunk.slot_of(panel.which, panel.number);
+                let sources = panel.ends.map(|end| filling.source.get(end));
+                chunk
+                    .sent
+                    .add(slot, sent(panel.masses, sources, chunk.depth.get(slot), chunk.decay.get(slot)));
             }
         }
         chunk
@@ -82,14 +86,13 @@ fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>, decay
 
 /// A medium at the ends of its panels, and those of them whose light arrives. Ends of others stay dark.
 fn filling<R: Real>(medium: usize, panels: Panels<R, 10>, chunk: &Chunk<R>) -> (Filling<R>, Vec<Panel<R>>) {
-    let count = panels.places.len();
-    let [scatter, source] =
-        [SCATTERING, EMISSION].map(|first| colors(&panels.values, first).collect::<Vec<_>>());
+    let [_, a, b, c, _, _, _, g, h, i] = panels.values;
+    let [scatter, source] = [[a, b, c], [g, h, i]].map(Colors);
     let mut list = panels.list;
-    list.retain(|panel| chunk.arriving[panel.slot].is_some());
-    let mut lit = vec![false; count];
+    list.retain(|panel| chunk.is_open(chunk.slot_of(panel.which, panel.number)));
+    let mut lit = vec![false; panels.places.len()];
     for end in list.iter().flat_map(|panel| panel.ends) {
-        lit[end] = scatters(scatter[end]);
+        lit[end] = scatters(scatter.get(end));
     }
     (Filling { medium, places: panels.places, points: panels.points, scatter, lit, source }, list)
 }

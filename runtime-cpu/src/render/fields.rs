@@ -2,7 +2,7 @@
 
 use super::camera::Ray;
 use crate::interp::{Evaluator, Tapes};
-use crate::real::{Real, Vec3};
+use crate::real::{Real, Vec3, add};
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
@@ -118,10 +118,40 @@ impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
     }
 }
 
-/// The colours in three outputs of a function, the first of them named.
-pub(crate) fn colors<R: Real>(outputs: &[Vec<R>], first: usize) -> impl Iterator<Item = Vec3<R>> {
-    let [r, g, b] = [0, 1, 2].map(|channel| &outputs[first + channel]);
-    r.iter().zip(g).zip(b).map(|((&r, &g), &b)| [r, g, b])
+/// Many colours, one row per channel.
+#[derive(Clone, Debug)]
+pub(crate) struct Colors<R>(pub(crate) [Vec<R>; 3]);
+
+impl<R: Real> Colors<R> {
+    /// As many that are all alike in all channels.
+    pub(crate) fn splat(value: R, count: usize) -> Self {
+        Self(std::array::from_fn(|_| vec![value; count]))
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.0[0].len()
+    }
+
+    /// One of them.
+    #[inline(always)]
+    pub(crate) fn get(&self, index: usize) -> Vec3<R> {
+        let [r, g, b] = &self.0;
+        [r[index], g[index], b[index]]
+    }
+
+    /// Puts one in another's place.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, index: usize, color: Vec3<R>) {
+        let [r, g, b] = &mut self.0;
+        [r[index], g[index], b[index]] = color;
+    }
+
+    /// Adds to one of them.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, index: usize, color: Vec3<R>) {
+        self.set(index, add(self.get(index), color));
+    }
 }
 
 /// The batch evaluator, f32.

@@ -21,11 +21,12 @@ mod spline;
 
 pub(crate) use fill::{fill, filling_bytes};
 pub(super) use fill::{nodes, recipe};
-#[cfg(test)]
 pub(super) use packed::unpacked;
 
 use self::packed::Packed;
-use crate::real::{Real, Vec3, dot, length, mul, scale, splat, sub, vector};
+use super::fields::{Colors, Points};
+use crate::isa::Loop;
+use crate::real::{Decays, Real, Vec3, dot, length, mul, scale, smallest, splat, sub, vector};
 use std::sync::Arc;
 use vol_compiler::frame::{GridColumn, LightGrid};
 
@@ -65,7 +66,24 @@ impl<R: Real> Grid<R> {
         }
     }
 
+    /// Part of the light that arrives at points, per channel; nothing where depths are above `opaque`.
+    pub(super) fn transmittances(&self, points: &Points<R>, opaque: R) -> Colors<R> {
+        let mut depths = Colors::splat(R::ZERO, points.len());
+        R::vectorized(Depths { grid: self, points, depths: &mut depths });
+        let mut decays = Colors::splat(R::ZERO, points.len());
+        for (x, decays) in depths.0.iter().zip(&mut decays.0) {
+            R::vectorized(Decays { x, decays });
+        }
+        for index in 0..points.len() {
+            if smallest(depths.get(index)) > opaque {
+                decays.set(index, splat(R::ZERO));
+            }
+        }
+        decays
+    }
+
     /// Depth at a point.
+    #[inline(always)]
     pub(crate) fn depth(&self, point: Vec3<R>) -> Vec3<R> {
         // Find the point as the light sees it.
         let off = sub(point, self.origin);
@@ -91,6 +109,7 @@ impl<R: Real> Grid<R> {
     }
 
     /// One channel between the points around; what the cubic overshoots below 0 is cut off.
+    #[inline(always)]
     fn channel(&self, channel: usize, [x, y, z]: &[Stencil<R>; 3]) -> R {
         // Four sums side by side, which are one vector.
         let mut sums = [R::ZERO; 4];
@@ -109,18 +128,38 @@ impl<R: Real> Grid<R> {
     }
 
     /// Depths at four points of a column.
+    #[inline(always)]
     fn along(&self, column: usize, channel: usize, points: [i32; 4]) -> [f32; 4] {
         let GridColumn { first, count, at } = self.table.columns[column];
         let depths = &self.table.depths[at as usize..];
-        let places = points.map(|point| (point - first as i32).clamp(0, count as i32 - 1) as usize);
         // With one channel they are neighbours, but at the ends.
+        let begin = (points[0] - first as i32) as usize;
         if self.channels == 1
-            && places[3] == places[0] + 3
-            && let Some(four) = depths[places[0]..].first_chunk()
+            && points[3] == points[0] + 3
+            && begin < count as usize
+            && let Some(four) = depths[begin..count as usize].first_chunk()
         {
             return *four;
         }
+        let places = points.map(|point| (point - first as i32).clamp(0, count as i32 - 1) as usize);
         places.map(|place| depths[self.channels * place + channel])
+    }
+}
+
+struct Depths<'a, R> {
+    grid: &'a Grid<R>,
+    points: &'a Points<R>,
+    depths: &'a mut Colors<R>,
+}
+
+impl<R: Real> Loop for Depths<'_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for index in 0..self.points.len() {
+            self.depths.set(index, self.grid.depth(self.points.get(index)));
+        }
     }
 }
 
@@ -134,6 +173,7 @@ struct Stencil<R> {
 
 impl<R: Real> Stencil<R> {
     /// `place` in 0..`last`.
+    #[inline(always)]
     fn new(place: R, last: R, spline: bool) -> Self {
         let index = place.floor().min(last - R::ONE);
         let t = place - index;
@@ -166,7 +206,7 @@ pub(super) fn splined(grid: &LightGrid, most_words: usize) -> Option<LightGrid> 
         return None;
     }
     let channels = grid.channels();
-    let values = spline::coefficients(packed::unpacked(grid), grid.counts, channels);
+    let values = spline::coefficients(unpacked(grid), grid.counts, channels);
     let mut packed = Packed::new();
     values.chunks(grid.counts[2] as usize * channels).for_each(|column| packed.push(0, column, channels));
     let LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, .. } = *grid;

@@ -12,19 +12,19 @@
 //! Twin: `compiler/src/wgsl/render/medium.wgsl`.
 
 use super::camera::Ray;
+use super::chunk::Chunk;
 use super::comb::{Combs, Cursor, Inside};
-use super::fields::{Fields, colors};
+use super::fields::{Colors, Fields};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
 use super::styled::StyledRays;
-use crate::real::{Real, Vec3, add, largest, mul, scale, splat};
-use std::array;
+use crate::isa::Loop;
+use crate::real::{Real, Vec3, largest, mul, splat};
 use vol_compiler::frame::Quadrature;
 
-/// Places of the colours among the outputs of [`vol_compiler::program::Medium::interior`].
-pub(super) const SCATTERING: usize = 1;
+/// Place of the extinction among the outputs of [`vol_compiler::program::Medium::interior`]: the scattering is before it,
+/// the emission behind.
 pub(super) const EXTINCTION: usize = 4;
-pub(super) const EMISSION: usize = 7;
 
 /// Where less than this of the light arrives, the ray ends: what lies behind is lost, at most this
 /// much of its radiance.
@@ -55,33 +55,6 @@ impl<R: Real> Glow<R> {
     }
 }
 
-/// The next nodes or panels of each active ray; one slot for each.
-pub(super) struct Chunk<R> {
-    /// Optical depth.
-    pub(super) depth: Vec<Vec3<R>>,
-    /// exp(-x) of that.
-    pub(super) decay: Vec<Vec3<R>>,
-    /// Fraction of what is sent from there that reaches the eye; nothing behind the end of the ray.
-    pub(super) arriving: Vec<Option<Vec3<R>>>,
-    /// Light that leaves towards the eye.
-    pub(super) sent: Vec<Vec3<R>>,
-}
-
-impl<R: Real> Chunk<R> {
-    /// Nothing is there.
-    pub(super) fn new(slots: usize) -> Self {
-        let zero = splat(R::ZERO);
-        let decay = vec![splat(R::ONE); slots];
-        Self { depth: vec![zero; slots], decay, arriving: vec![None; slots], sent: vec![zero; slots] }
-    }
-
-    /// What leaves a node of a source that is spread over its optical depth.
-    pub(super) fn mean(&self, slot: usize, source: Vec3<R>) -> Vec3<R> {
-        let [depth, decay] = [self.depth[slot], self.decay[slot]];
-        mul(source, array::from_fn(|channel| depth[channel].mean_decay(decay[channel])))
-    }
-}
-
 impl<F: Fields> Integrator<'_, F> {
     /// Follows each ray through the media up to its end.
     pub(crate) fn march(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Glow<F::Real>> {
@@ -95,7 +68,7 @@ impl<F: Fields> Integrator<'_, F> {
                 Quadrature::Midpoint => self.node_chunk(rays, &styled, &combs, &active, &glows),
                 Quadrature::Corrected => self.panel_chunk(rays, &styled, &combs, &active, &glows),
             };
-            self.gather(&active, &mut glows, &chunk);
+            chunk.gather(&active, &mut glows);
             let nodes = active.len() as u64 * self.batches.nodes as u64;
             if self.is_broke(nodes + self.stats.medium_samples - before) {
                 break;
@@ -121,11 +94,11 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Chunk<F::Real> {
         let (mut chunk, fillings) = self.lit_nodes(rays, styled, combs, active, glows, None);
         // Add up what they send.
-        let nodes = self.batches.nodes as usize;
+        let means = chunk.means();
         for filling in &fillings {
-            for (place, &source) in filling.places.iter().zip(&filling.source) {
-                let slot = place.slot(nodes);
-                chunk.sent[slot] = add(chunk.sent[slot], chunk.mean(slot, source));
+            for (index, place) in filling.places.iter().enumerate() {
+                let slot = chunk.slot(place);
+                chunk.sent.add(slot, mul(filling.source.get(index), means.get(slot)));
             }
         }
         chunk
@@ -142,18 +115,19 @@ impl<F: Fields> Integrator<'_, F> {
         glows: &[Glow<F::Real>],
         only: Option<usize>,
     ) -> (Chunk<F::Real>, Vec<Filling<F::Real>>) {
-        let nodes = self.batches.nodes as usize;
-        let mut chunk = Chunk::new(active.len() * nodes);
+        let mut chunk = Chunk::new(active.len(), self.batches.nodes as usize, self.scene.stop);
         let fillings = 0..self.scene.media.len();
         let fillings = fillings.map(|medium| self.fill(medium, rays, combs, active, &mut chunk));
         let mut fillings: Vec<_> = fillings.collect();
-        self.transmit(active, glows, &mut chunk);
+        chunk.transmit(active, glows);
         for filling in &mut fillings {
-            let places = filling.places.iter().zip(&filling.scatter);
-            let lit = places.map(|(place, &k)| chunk.arriving[place.slot(nodes)].is_some() && scatters(k));
+            let places = filling.places.iter().enumerate();
+            let lit = places.map(|(index, place)| {
+                chunk.is_open(chunk.slot(place)) && scatters(filling.scatter.get(index))
+            });
             filling.lit = lit.collect();
             if only.is_some() {
-                filling.source.fill(splat(F::Real::ZERO));
+                filling.source = Colors::splat(F::Real::ZERO, filling.places.len());
             }
         }
         self.light_places(rays, styled, active, &mut fillings, only);
@@ -171,55 +145,40 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Filling<F::Real> {
         let Inside { places, weights, points } = self.inside(medium, rays, combs, active);
         let interior = self.scene.media[medium].interior;
-        let values: [Vec<F::Real>; 10] = self.fields.sample(interior, &points);
+        let [density, values @ ..]: [Vec<F::Real>; 10] = self.fields.sample(interior, &points);
         self.stats.medium_samples += places.len() as u64;
+        let mut values = values;
         let mut masses = weights;
-        for (mass, density) in masses.iter_mut().zip(&values[0]) {
-            *mass = density.max(F::Real::ZERO) * *mass;
+        F::Real::vectorized(PerMass { density: &density, masses: &mut masses, values: &mut values });
+        let [a, b, c, d, e, f, g, h, i] = values;
+        let [scatter, extinction, source] = [[a, b, c], [d, e, f], [g, h, i]].map(Colors);
+        for (index, place) in places.iter().enumerate() {
+            let slot = chunk.slot(place);
+            chunk.depth.add(slot, extinction.get(index));
         }
-        let nodes = self.batches.nodes as usize;
-        let per_mass = |first| colors(&values, first).zip(&masses).map(|(color, &mass)| scale(color, mass));
-        for (place, depth) in places.iter().zip(per_mass(EXTINCTION)) {
-            let slot = place.slot(nodes);
-            chunk.depth[slot] = add(chunk.depth[slot], depth);
-        }
-        let [scatter, source] = [SCATTERING, EMISSION].map(|first| per_mass(first).collect());
         Filling { medium, places, points, scatter, lit: Vec::new(), source }
     }
+}
 
-    /// Finds how much of each node's light arrives, and which nodes are behind the end of the ray.
-    pub(super) fn transmit(&self, active: &[Cursor], glows: &[Glow<F::Real>], chunk: &mut Chunk<F::Real>) {
-        let nodes = self.batches.nodes as usize;
-        F::Real::decays(chunk.depth.as_flattened(), chunk.decay.as_flattened_mut());
-        for (which, cursor) in active.iter().enumerate() {
-            let mut transmittance = glows[cursor.ray].transmittance;
-            for slot in which * nodes..(which + 1) * nodes {
-                if largest(transmittance) < self.scene.stop {
-                    break;
-                }
-                chunk.arriving[slot] = Some(transmittance);
-                transmittance = mul(transmittance, chunk.decay[slot]);
-            }
+/// Multiplies coefficients per unit of density by the matter of each node.
+struct PerMass<'a, R> {
+    density: &'a [R],
+    /// Lengths of ray; then what matter there is in them.
+    masses: &'a mut [R],
+    values: &'a mut [Vec<R>],
+}
+
+impl<R: Real> Loop for PerMass<'_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (mass, &density) in self.masses.iter_mut().zip(self.density) {
+            *mass = density.max(R::ZERO) * *mass;
         }
-    }
-
-    /// Adds up the nodes of each ray, front to back.
-    pub(super) fn gather(&self, active: &[Cursor], glows: &mut [Glow<F::Real>], chunk: &Chunk<F::Real>) {
-        let nodes = self.batches.nodes as usize;
-        for (which, cursor) in active.iter().enumerate() {
-            let glow = &mut glows[cursor.ray];
-            for node in 0..nodes {
-                let slot = which * nodes + node;
-                let Some(arriving) = chunk.arriving[slot] else { break };
-                let (sent, decay) = (chunk.sent[slot], chunk.decay[slot]);
-                glow.light = add(glow.light, mul(arriving, sent));
-                glow.transmittance = mul(arriving, decay);
-                // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
-                if (cursor.node as usize + node).is_multiple_of(2) {
-                    let twice = mul(sent, decay.map(|decay| F::Real::ONE + decay));
-                    glow.coarse_light = add(glow.coarse_light, mul(glow.coarse_transmittance, twice));
-                    glow.coarse_transmittance = mul(glow.coarse_transmittance, mul(decay, decay));
-                }
+        for values in self.values {
+            for (value, &mass) in values.iter_mut().zip(&*self.masses) {
+                *value = *value * mass;
             }
         }
     }

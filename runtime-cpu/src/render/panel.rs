@@ -19,7 +19,7 @@
 //! Twin: `compiler/src/wgsl/render/panel.wgsl`.
 
 use super::camera::Ray;
-use super::chord::Gap;
+use super::chord::{Chord, Gap};
 use super::comb::{Combs, Cursor, NodeRange};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
@@ -33,9 +33,10 @@ pub(crate) const WALL_ROUNDS: u32 = 5;
 /// A stretch of a ray inside a medium.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Panel<R> {
-    /// Number of the interval between nodes: that of interval `j` after the cursor of active ray `a` is
-    /// `a * batches.nodes + j`.
-    pub(crate) slot: usize,
+    /// Index of the active ray.
+    pub(crate) which: usize,
+    /// Number of the interval between nodes after the cursor.
+    pub(crate) number: usize,
     /// Places at which it begins and ends.
     pub(crate) ends: [usize; 2],
     /// Integral of the density that each end stands for.
@@ -70,7 +71,8 @@ impl<R: Real, const N: usize> Panels<R, N> {
 /// Where a panel will be.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
-    slot: usize,
+    which: usize,
+    number: usize,
     ends: [usize; 2],
     /// Whether matter is cut off at each end: at a wall or an end of the ray.
     open: [bool; 2],
@@ -157,10 +159,10 @@ impl<F: Fields> Integrator<'_, F> {
         places.extend(self.walls(medium, rays, active, crossings));
         let points = places.iter().map(|place| rays[active[place.which].ray].at(place.t)).collect();
         let values: [Vec<F::Real>; N] = self.fields.sample(function, &points);
-        let panel = |Stretch { slot, ends, open }: Stretch| {
+        let panel = |Stretch { which, number, ends, open }: Stretch| {
             let length = places[ends[1]].t - places[ends[0]].t;
             let masses = masses(combs.step, length, ends.map(|end| values[0][end]), open);
-            Panel { slot, ends, masses }
+            Panel { which, number, ends, masses }
         };
         let has_matter = |panel: &Panel<F::Real>| panel.masses.iter().any(|&mass| mass > F::Real::ZERO);
         let list = stretches.into_iter().map(panel).filter(has_matter).collect();
@@ -196,7 +198,6 @@ impl<F: Fields> Integrator<'_, F> {
         let (mut crossings, mut gaps) = (Vec::new(), Vec::new());
         for (which, first, run) in runs {
             let Cursor { ray, node } = active[which];
-            let slot = which * self.batches.nodes as usize;
             let place = |index: usize| {
                 let node = first - node + (index - run.start) as i32;
                 Place { which, node: Some(node as usize), t: distances[index] }
@@ -217,16 +218,17 @@ impl<F: Fields> Integrator<'_, F> {
                 if from[0] >= to[0] {
                     continue;
                 }
-                let slot = slot + (number - node) as usize;
+                let is_last = to[0] < combs.distance(ray, number + 1);
+                let first = number == 0;
+                let number = (number - node) as usize;
                 if inside == [false, false] {
-                    gaps.extend(Gap::new(which, slot, from, to));
+                    gaps.extend(Gap::new(which, number, from, to));
                     continue;
                 }
                 let wall = nodes + crossings.len();
                 let ends = [if inside[0] { known - 1 } else { wall }, if inside[1] { known } else { wall }];
-                let is_last = to[0] < combs.distance(ray, number + 1);
-                let open = [!inside[0] || number == 0, !inside[1] || is_last];
-                stretches.push(Stretch { slot, ends, open });
+                let open = [!inside[0] || first, !inside[1] || is_last];
+                stretches.push(Stretch { which, number, ends, open });
                 match inside {
                     [true, false] => crossings.push(Crossing::new(which, from, to)),
                     [false, true] => crossings.push(Crossing::new(which, to, from)),
@@ -236,8 +238,9 @@ impl<F: Fields> Integrator<'_, F> {
         }
         for chord in self.chords(medium, rays, active, gaps) {
             let wall = nodes + crossings.len();
-            stretches.push(Stretch { slot: chord.slot, ends: [wall, wall + 1], open: [true, true] });
-            crossings.extend(chord.walls);
+            let Chord { which, number, walls } = chord;
+            stretches.push(Stretch { which, number, ends: [wall, wall + 1], open: [true, true] });
+            crossings.extend(walls);
         }
         (places, stretches, crossings)
     }

@@ -5,13 +5,14 @@
 
 use super::camera::Ray;
 use super::comb::Cursor;
-use super::fields::{Fields, Points};
+use super::fields::{Colors, Fields, Points};
 use super::scene::{Integrator, Light};
-use super::shade::{Arriving, arriving};
+use super::shade::arriving;
 use super::shadow::ShadowRay;
 use super::styled::{StyledRay, StyledRays, asked};
 use super::surface::shadow_bias;
 use crate::real::{Real, Vec3, add, dot, mul, scale, splat, sub};
+use std::array;
 use vol_compiler::program::Lighting;
 
 /// Where a medium is sampled.
@@ -25,13 +26,6 @@ pub(crate) struct Place<R> {
     pub(crate) t: R,
 }
 
-impl<R> Place<R> {
-    /// The slot of its node, with so many to an active ray.
-    pub(crate) fn slot(&self, nodes: usize) -> usize {
-        self.which * nodes + self.node.unwrap_or(0)
-    }
-}
-
 /// One medium at its places.
 pub(crate) struct Filling<R> {
     pub(crate) medium: usize,
@@ -39,11 +33,11 @@ pub(crate) struct Filling<R> {
     /// The same in space.
     pub(crate) points: Points<R>,
     /// Scattering, times whatever the source is meant per.
-    pub(crate) scatter: Vec<Vec3<R>>,
+    pub(crate) scatter: Colors<R>,
     /// Whether light matters there.
     pub(crate) lit: Vec<bool>,
     /// Light sent towards the eye; the medium's own before that of the lamps.
-    pub(crate) source: Vec<Vec3<R>>,
+    pub(crate) source: Colors<R>,
 }
 
 /// Whether any channel scatters.
@@ -79,37 +73,53 @@ impl<F: Fields> Integrator<'_, F> {
         styled: Option<&[StyledRay<F::Real>]>,
         active: &[Cursor],
         filling: &mut Filling<F::Real>,
-        seen: &[Vec3<F::Real>],
+        seen: &Colors<F::Real>,
     ) {
         let medium = &self.scene.media[filling.medium];
         if medium.lighting == Lighting::None {
             return;
         }
-        // Evaluate the phase function where light is scattered.
         let lit: Vec<usize> = (0..filling.lit.len()).filter(|&place| filling.lit[place]).collect();
-        let lamp = |&place: &usize| arriving(light, filling.points.get(place));
-        let lamps: Vec<Arriving<F::Real>> = lit.iter().map(lamp).collect();
-        let angle = |(&place, lamp): (&usize, &Arriving<F::Real>)| {
-            turn(lamp.direction, rays[active[filling.places[place].which].ray].direction)
-        };
-        let angles: Vec<_> = lit.iter().zip(&lamps).map(angle).collect();
-        let less: Vec<_> = angles.iter().map(|angle| angle[0]).collect();
-        let more: Vec<_> = angles.iter().map(|angle| angle[1]).collect();
-        let [phase] = self.fields.apply(medium.phase, &[&less, &more]);
+        let phases = self.phases(light, rays, active, filling, &lit);
         // Add what arrives and is turned towards the eye.
         let table = self.scene.styled(light);
-        for ((place, lamp), phase) in lit.into_iter().zip(lamps).zip(phase) {
+        for (place, phase) in lit.into_iter().zip(phases) {
             let arrives = match (medium.lighting, &table, styled) {
                 (Lighting::Unshadowed, ..) => splat(F::Real::ONE),
                 (_, Some(table), Some(styled)) => {
                     let (ray, _) = asked(active, &filling.places[place]);
-                    mul(seen[place], self.styled_tint(table, &styled[ray], filling.points.get(place)))
+                    mul(seen.get(place), self.styled_tint(table, &styled[ray], filling.points.get(place)))
                 }
-                _ => seen[place],
+                _ => seen.get(place),
             };
-            let light = mul(scale(filling.scatter[place], phase), mul(lamp.irradiance, arrives));
-            filling.source[place] = add(filling.source[place], light);
+            let lamp = arriving(light, filling.points.get(place));
+            let light = mul(scale(filling.scatter.get(place), phase), mul(lamp.irradiance, arrives));
+            filling.source.add(place, light);
         }
+    }
+
+    /// The phase function of a medium, from a lamp towards the eye, at some of its places.
+    fn phases(
+        &mut self,
+        light: &Light<F::Real>,
+        rays: &[Ray<F::Real>],
+        active: &[Cursor],
+        filling: &Filling<F::Real>,
+        some: &[usize],
+    ) -> Vec<F::Real> {
+        let ray = |which: usize| rays[active[which].ray].direction;
+        let which = |&place: &usize| filling.places[place].which;
+        // The light of a distant lamp turns by one angle all along a ray.
+        let once = light.distant && some.len() > active.len();
+        let turns: Vec<_> = if once {
+            (0..active.len()).map(|which| turn(light.position, ray(which))).collect()
+        } else {
+            let lamp = |place: usize| arriving(light, filling.points.get(place)).direction;
+            some.iter().map(|place| turn(lamp(*place), ray(which(place)))).collect()
+        };
+        let [less, more]: [Vec<_>; 2] = [0, 1].map(|side| turns.iter().map(|turn| turn[side]).collect());
+        let [phases] = self.fields.apply(self.scene.media[filling.medium].phase, &[&less, &more]);
+        if once { some.iter().map(|place| phases[which(place)]).collect() } else { phases }
     }
 
     /// Fraction of a lamp's light that arrives at each place of each medium that needs to know. Media
@@ -121,30 +131,27 @@ impl<F: Fields> Integrator<'_, F> {
         styled: Option<&[StyledRay<F::Real>]>,
         active: &[Cursor],
         fillings: &[Filling<F::Real>],
-    ) -> Vec<Vec<Vec3<F::Real>>> {
-        let one = splat(F::Real::ONE);
-        let mut seen: Vec<_> = fillings.iter().map(|filling| vec![one; filling.lit.len()]).collect();
+    ) -> Vec<Colors<F::Real>> {
+        let one = F::Real::ONE;
+        let seen = fillings.iter().map(|filling| Colors::splat(one, filling.places.len()));
+        let mut seen: Vec<_> = seen.collect();
         if !light.shadows {
             return seen;
         }
-        let scene = self.scene;
-        let shadowed =
-            |filling: &Filling<F::Real>| scene.media[filling.medium].lighting == Lighting::Shadowed;
+        let media = &self.scene.media;
+        let shadowed = |filling: &Filling<F::Real>| media[filling.medium].lighting == Lighting::Shadowed;
         // One node more than panels; of one medium each asks for itself.
         let nodes = self.batches.nodes as usize + 1;
         let shared = fillings.iter().filter(|filling| shadowed(filling)).count() > 1;
         let mut known = vec![None; if shared { active.len() * nodes } else { 0 }];
-        let (mut asking, mut places, mut shadow_rays) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut asking, mut places, mut points) = (Vec::new(), Vec::new(), Points::new());
         for (which, filling) in fillings.iter().enumerate().filter(|(_, filling)| shadowed(filling)) {
             for (index, place) in filling.places.iter().enumerate().filter(|&(index, _)| filling.lit[index]) {
-                let mut node = place.node.and_then(|_| known.get_mut(place.slot(nodes)));
-                let number = node.as_ref().and_then(|node| **node).unwrap_or(shadow_rays.len());
-                if number == shadow_rays.len() {
-                    let origin = filling.points.get(index);
-                    let lamp = arriving(light, origin);
-                    let ray = Ray::new(origin, lamp.direction);
+                let mut node = place.node.and_then(|node| known.get_mut(place.which * nodes + node));
+                let number = node.as_ref().and_then(|node| **node).unwrap_or(places.len());
+                if number == places.len() {
                     places.push(asked(active, place));
-                    shadow_rays.push(ShadowRay::new(ray, lamp.distance, shadow_bias(scene, place.t)));
+                    points.push(filling.points.get(index));
                 }
                 if let Some(node) = &mut node {
                     **node = Some(number);
@@ -152,14 +159,37 @@ impl<F: Fields> Integrator<'_, F> {
                 asking.push((which, index, number));
             }
         }
-        let found = match (self.scene.styled(light), styled) {
-            (Some(table), Some(styled)) => {
-                self.styled_visibility(light, &table, rays, styled, &places, &shadow_rays)
-            }
-            _ => self.visibility(&shadow_rays, light),
-        };
-        asking.into_iter().for_each(|(which, index, number)| seen[which][index] = found[number]);
+        let found = self.arriving_at(light, rays, styled, &places, &points);
+        asking.into_iter().for_each(|(which, index, number)| seen[which].set(index, found.get(number)));
         seen
+    }
+
+    /// Fraction of a lamp's light that arrives at points, which are `asked` for as a style is.
+    fn arriving_at(
+        &mut self,
+        light: &Light<F::Real>,
+        rays: &[Ray<F::Real>],
+        styled: Option<&[StyledRay<F::Real>]>,
+        asked: &[(usize, F::Real)],
+        points: &Points<F::Real>,
+    ) -> Colors<F::Real> {
+        let scene = self.scene;
+        let table = scene.styled(light).zip(styled);
+        if let Some(grid) = scene.grid(light).filter(|_| table.is_none() && scene.solids.is_empty()) {
+            self.stats.shadow_rays += points.len() as u64;
+            return grid.transmittances(points, scene.opaque);
+        }
+        let shadow_ray = |(index, &(_, t)): (usize, &(usize, F::Real))| {
+            let origin = points.get(index);
+            let lamp = arriving(light, origin);
+            ShadowRay::new(Ray::new(origin, lamp.direction), lamp.distance, shadow_bias(scene, t))
+        };
+        let shadow_rays: Vec<_> = asked.iter().enumerate().map(shadow_ray).collect();
+        let found = match table {
+            Some((table, styled)) => self.styled_visibility(light, &table, rays, styled, asked, &shadow_rays),
+            None => self.visibility(&shadow_rays, light),
+        };
+        Colors(array::from_fn(|channel| found.iter().map(|color| color[channel]).collect()))
     }
 }
 

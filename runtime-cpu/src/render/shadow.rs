@@ -6,13 +6,13 @@
 
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};
-use super::fields::{Fields, colors};
+use super::fields::Fields;
 use super::near::Walkers;
 use super::panel::Panels;
 use super::penumbra::Cone;
 use super::scene::{Integrator, Light};
 use super::surface::MAX_STEPS;
-use crate::real::{Real, Vec3, add, scale, smallest, splat};
+use crate::real::{Decays, Real, Vec3, add, scale, smallest, splat};
 use vol_compiler::frame::Quadrature;
 
 /// Optical depth above which nothing arrives; exp(-24) is 4e-11. It only grows along a ray, so
@@ -87,7 +87,7 @@ impl<F: Fields> Integrator<'_, F> {
             let free: Vec<usize> = (0..batch.len()).filter(|&ray| parts[ray] > F::Real::ZERO).collect();
             let depths = self.depth_towards(light, batch, &free);
             let mut decays = vec![splat(F::Real::ZERO); depths.len()];
-            F::Real::decays(depths.as_flattened(), decays.as_flattened_mut());
+            F::Real::vectorized(Decays { x: depths.as_flattened(), decays: decays.as_flattened_mut() });
             for ((ray, depth), decay) in free.into_iter().zip(depths).zip(decays) {
                 let dark = smallest(depth) > self.scene.opaque;
                 seen[ray] = if dark { splat(F::Real::ZERO) } else { scale(decay, parts[ray]) };
@@ -187,9 +187,10 @@ impl<F: Fields> Integrator<'_, F> {
             if self.is_broke(spent) {
                 break;
             }
-            for (which, steps) in steps.chunks(nodes as usize).enumerate() {
-                let ray = active[which].ray;
-                depths[ray] = steps.iter().fold(depths[ray], |depth, &step| add(depth, step));
+            for steps in steps.chunks(active.len()) {
+                for (cursor, &step) in active.iter().zip(steps) {
+                    depths[cursor.ray] = add(depths[cursor.ray], step);
+                }
             }
             // Go on with the rays that are not dark yet.
             active.retain_mut(|cursor| {
@@ -200,7 +201,8 @@ impl<F: Fields> Integrator<'_, F> {
         depths
     }
 
-    /// Optical depth of each of the next nodes or panels, all media together: one slot for each.
+    /// Optical depth of each of the next nodes or panels, all media together: those of the first node of each active ray,
+    /// then of the second.
     pub(super) fn step_depths(
         &mut self,
         rays: &[Ray<F::Real>],
@@ -230,14 +232,11 @@ impl<F: Fields> Integrator<'_, F> {
         let extinction = self.scene.media[medium].extinction;
         let values: [Vec<F::Real>; 4] = self.fields.sample(extinction, &inside.points);
         self.stats.shadow_samples += inside.places.len() as u64;
-        let nodes = self.batches.nodes as usize;
-        let masses = values[0]
-            .iter()
-            .zip(&inside.weights)
-            .map(|(density, &weight)| density.max(F::Real::ZERO) * weight);
-        for ((place, color), mass) in inside.places.iter().zip(colors(&values, 1)).zip(masses) {
-            let slot = place.slot(nodes);
-            steps[slot] = add(steps[slot], scale(color, mass));
+        let [density, r, g, b] = values;
+        for (index, place) in inside.places.iter().enumerate() {
+            let mass = density[index].max(F::Real::ZERO) * inside.weights[index];
+            let step = &mut steps[place.node.unwrap_or(0) * active.len() + place.which];
+            *step = add(*step, scale([r[index], g[index], b[index]], mass));
         }
     }
 
@@ -254,7 +253,8 @@ impl<F: Fields> Integrator<'_, F> {
         let panels: Panels<_, 4> = self.panels(medium, extinction, rays, combs, active);
         self.stats.shadow_samples += panels.places.len() as u64;
         for panel in &panels.list {
-            steps[panel.slot] = add(steps[panel.slot], panels.depth(panel, 1));
+            let step = &mut steps[panel.number * active.len() + panel.which];
+            *step = add(*step, panels.depth(panel, 1));
         }
     }
 }

@@ -26,7 +26,7 @@ use super::medium::Glow;
 use super::scatter::Place;
 use super::scene::{Integrator, Light, Scene};
 use super::shadow::ShadowRay;
-use crate::real::{Real, Vec3, add, dot, largest, mul, scale, splat, sub, vector};
+use crate::real::{Larger, Real, Vec3, add, dot, largest, mul, scale, splat, sub, vector};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use vol_compiler::frame::Aabb;
@@ -190,17 +190,18 @@ impl<F: Fields> Integrator<'_, F> {
         let mut places = vec![Vec::new(); rays.len()];
         while !active.is_empty() {
             let (chunk, fillings) = self.lit_nodes(rays, &styled, &combs, &active, &glows, Some(light));
+            let means = chunk.means();
             for filling in &fillings {
                 for (index, place) in filling.places.iter().enumerate() {
-                    let slot = place.slot(self.batches.nodes as usize);
-                    let Some(arriving) = chunk.arriving[slot].filter(|_| filling.lit[index]) else {
+                    let slot = chunk.slot(place);
+                    let Some(arriving) = chunk.arriving(slot).filter(|_| filling.lit[index]) else {
                         continue;
                     };
-                    let sent = chunk.mean(slot, filling.source[index]);
+                    let sent = mul(filling.source.get(index), means.get(slot));
                     places[active[place.which].ray].push((filling.points.get(index), mul(arriving, sent)));
                 }
             }
-            self.gather(&active, &mut glows, &chunk);
+            chunk.gather(&active, &mut glows);
             let (stop, nodes) = (self.scene.stop, self.batches.nodes);
             active.retain_mut(|cursor| {
                 largest(glows[cursor.ray].transmittance) >= stop && combs.advance(cursor, nodes)
@@ -383,7 +384,7 @@ pub(super) fn lit_share<R: Real>(slices: &Slices, ray: &StyledRay<R>, from: R, t
     };
     let parts = part(left) + if right > left { part(right) } else { R::ZERO };
     let between = &slices.slopes[first..][(left + 1) as usize..right.max(left + 1) as usize];
-    let dark = R::from_index(ray.slope.larger(between) as i32) + parts;
+    let dark = R::from_index(R::vectorized(Larger { than: ray.slope, numbers: between }) as i32) + parts;
     (R::ONE - dark / width).max(R::ZERO).min(R::ONE)
 }
 

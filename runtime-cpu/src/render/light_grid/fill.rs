@@ -216,15 +216,14 @@ impl<F: Fields> Integrator<'_, F> {
         while !active.is_empty() {
             // Give each node's or panel's depth to the point behind it.
             let found = self.step_depths(rays, &combs, &active);
-            for (cursor, found) in active.iter().zip(found.chunks(nodes as usize)) {
-                let points = &points[cursor.ray];
-                let depths = &mut depths[starts[cursor.ray]..][1..points.len()];
-                let before = (column.nodes - cursor.node % column.nodes) as usize;
-                let (first, rest) = found.split_at(before.min(found.len()));
-                let intervals = std::iter::once(first).chain(rest.chunks(column.nodes as usize));
-                let first = (cursor.node / column.nodes) as usize - points.start;
-                for (place, found) in depths.iter_mut().skip(first).zip(intervals) {
-                    *place = found.iter().fold(*place, |sum, &depth| add(sum, depth));
+            for (node, found) in (0..).zip(found.chunks(active.len())) {
+                for (cursor, &found) in active.iter().zip(found) {
+                    let points = &points[cursor.ray];
+                    let before = ((cursor.node + node) / column.nodes) as usize - points.start;
+                    if before + 1 < points.len() {
+                        let depth = &mut depths[starts[cursor.ray] + before + 1];
+                        *depth = add(*depth, found);
+                    }
                 }
             }
             active.retain_mut(|cursor| combs.advance(cursor, nodes));

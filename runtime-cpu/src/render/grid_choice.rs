@@ -14,12 +14,16 @@ use super::pilot::{MOST_BUDGET, Picture, Pilot, cost};
 use super::scene::{Medium, Scene};
 use super::step_choice::{Search, StepChoice};
 use crate::interp::Tapes;
+use crate::math::fun::{exp2, log2};
 use std::sync::Arc;
 use vol_compiler::frame::{Aabb, Frame, Job, LightFrame, LightGrid, Sampling};
 use vol_compiler::program::Program;
 
 /// Intervals along the longest side of the first grid.
 const FIRST_INTERVALS: u32 = 32;
+
+/// Intervals along the longest side of the grids by which steps are chosen.
+const COARSE_INTERVALS: u32 = 96;
 
 /// Most words of all grids together, 96 MiB: a buffer that any device can bind holds 128 MiB.
 pub(super) const MAX_WORDS: usize = 24 << 20;
@@ -30,8 +34,9 @@ const PAYS: f64 = 0.5;
 /// Evaluations per node where none has been counted yet: region and extinction.
 const EVALUATIONS_PER_NODE: f64 = 2.0;
 
-/// The step of the marching that a grid is compared with, over that of shadow rays.
-const TEST_STEP: f32 = 0.5;
+/// The step of the marching that a grid is compared with, over that of shadow rays: its own error is small beside that of the
+/// grid, else ever finer grids would be filled for nothing.
+const TEST_STEP: f32 = 0.125;
 
 /// Part of the allowed error that a grid is meant to have.
 const PART: f32 = 0.7;
@@ -39,9 +44,15 @@ const PART: f32 = 0.7;
 /// Part of it that the finest grid which can be had may use up. What a grid leaves is for the steps.
 const MOST_PART: f32 = 0.8;
 
-/// Part of that error which the next grid is meant to have, if the error falls with the square of the
-/// distance between points.
+/// Part of that error which the next grid is meant to have.
 const AIM: f32 = 0.8;
+
+/// The error is taken to fall with this power of the distance between points, or with a lower one that the last two grids
+/// show, down to [`LEAST_ORDER`].
+const USUAL_ORDER: f32 = 2.0;
+
+/// As slowly it falls beside walls, where detail begins to be resolved.
+const LEAST_ORDER: f32 = 1.25;
 
 /// The error falls at best with this power: if even that does not suffice there will be no grid.
 const BEST_ORDER: i32 = 3;
@@ -80,6 +91,13 @@ pub struct GridChoice {
     pub error: Option<f32>,
 }
 
+impl GridChoice {
+    /// Error of the grid, if there is one.
+    fn taken(&self) -> Option<f32> {
+        self.error.filter(|_| self.grid.is_some())
+    }
+}
+
 /// A choice for each light of a frame, given the picture to be rendered and the error that is allowed in it.
 /// Grids that the frame holds already do not count. The result depends on the arguments alone.
 #[must_use]
@@ -96,30 +114,35 @@ pub(super) fn choose_among(
     filled: &mut FilledGrids,
 ) -> Vec<GridChoice> {
     let tapes = Tapes::of_frame(program, frame);
-    choose_by(&Pilot::new(frame, &tapes, job.size), program, job, max_error, filled)
+    choose_by(&Pilot::new(frame, &tapes, job.size), program, job, max_error, filled).lights
 }
 
-/// The same with a pilot of that frame.
+/// What was chosen for all lights.
+struct Choices {
+    lights: Vec<GridChoice>,
+    /// Whether rays through media are marched towards any of them.
+    marches: bool,
+}
+
+/// [`choose_light_grids`] with a pilot of the frame.
 fn choose_by(
     pilot: &Pilot<'_>,
     program: &Program,
     job: &Job,
     max_error: f32,
     filled: &mut FilledGrids,
-) -> Vec<GridChoice> {
+) -> Choices {
     let frame = pilot.frame;
-    let mut choices = vec![GridChoice::default(); frame.lights.len()];
-    let shadows = frame.lights.iter().any(|light| light.shadows);
+    let mut lights = vec![GridChoice::default(); frame.lights.len()];
     let scene = plain_scene(frame, job);
-    let Some(bounds) = around(&scene.media).filter(|_| shadows) else {
-        return choices;
+    let Some(bounds) = around(&scene.media).filter(|_| frame.lights.iter().any(|light| light.shadows)) else {
+        return Choices { lights, marches: false };
     };
     let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
-    let Some(((wanted, _), costs)) =
-        pilot.expose_scene(&fine, pilot.all(), LIMIT).zip(costs(frame, job, pilot))
-    else {
-        return choices;
-    };
+    let tested = pilot.expose_scene(&fine, pilot.all(), LIMIT);
+    let known =
+        tested.and_then(|(wanted, stats)| Some((wanted, costs(frame, job, pilot, cost(&stats) as f64)?)));
+    let Some((wanted, costs)) = known else { return Choices { lights, marches: true } };
     filled.begin(program, frame);
     let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
     // The errors of several lights add up like those of independent measurements.
@@ -135,10 +158,11 @@ fn choose_by(
         scene,
         filled,
     };
-    for (index, choice) in choices.iter_mut().enumerate() {
+    for (index, choice) in lights.iter_mut().enumerate() {
         *choice = trial.choose(index, costs[index]);
     }
-    choices
+    let marches = lights.iter().zip(&costs).any(|(choice, &cost)| cost > 0.0 && choice.grid.is_none());
+    Choices { lights, marches }
 }
 
 /// A frame without the grids that it holds.
@@ -154,9 +178,9 @@ fn around(media: &[Medium<f32>]) -> Option<Aabb> {
     boxes.reduce(|a, b| a.union(&b))
 }
 
-/// Evaluations that marching towards each light would take in the whole picture, from a few rays with the
-/// shadows of that light alone; nothing if even those are too many.
-fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>) -> Option<Vec<f64>> {
+/// Evaluations that marching towards each light would take in the whole picture, given those of the rays with all shadows
+/// and [`TEST_STEP`]; nothing if they are too many. Of several lights from rays with the shadows of each alone.
+fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>, tested: f64) -> Option<Vec<f64>> {
     let spent = |light: Option<usize>| {
         let mut scene = plain_scene(frame, job);
         scene.lights.iter_mut().for_each(|other| other.shadows &= Some(other.index) == light);
@@ -169,8 +193,13 @@ fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>) -> Option<Vec<f64>> {
     };
     let scale = pilot.scale * f64::from(samples);
     let without = spent(None)?;
+    let is_only = frame.lights.iter().filter(|light| light.shadows).count() == 1;
     let cost = |(index, light): (usize, &LightFrame)| {
-        if light.shadows { Some((spent(Some(index))? - without) * scale) } else { Some(0.0) }
+        Some(match light.shadows {
+            true if is_only => f64::from(TEST_STEP) * (tested - without) * scale,
+            true => (spent(Some(index))? - without) * scale,
+            false => 0.0,
+        })
     };
     frame.lights.iter().enumerate().map(cost).collect()
 }
@@ -200,6 +229,8 @@ impl Trial<'_> {
     fn choose(&mut self, light: usize, cost: f64) -> GridChoice {
         let mut choice = GridChoice::default();
         let mut finest = None;
+        // Intervals and error of the grid before.
+        let mut before: Option<[f32; 2]> = None;
         let (mut spent, mut per_node, mut per_point) = (0.0, EVALUATIONS_PER_NODE, 0.0);
         let mut intervals = FIRST_INTERVALS;
         loop {
@@ -226,7 +257,13 @@ impl Trial<'_> {
             }
             // As fine as seems needed and as memory allows; what coarse grids say of fine ones is not much.
             let room = (self.words as f32 / words as f32).cbrt();
-            let needed = (error / (AIM * target)).sqrt();
+            let order =
+                before.filter(|[count, _]| *count >= TELLING_INTERVALS as f32).map_or(USUAL_ORDER, |last| {
+                    let [finer, better] = [intervals as f32 / last[0], last[1] / error];
+                    (log2(better) / log2(finer)).clamp(LEAST_ORDER, USUAL_ORDER)
+                });
+            before = Some([intervals as f32, error]);
+            let needed = exp2(log2(error / (AIM * target)) / order);
             let most = if intervals < TELLING_INTERVALS { 2.0 } else { MOST_STEP };
             let finer = needed.clamp(LEAST_STEP, most).min(ROOM * room);
             if finer < LEAST_STEP || error > target * room.powi(BEST_ORDER) {
@@ -303,15 +340,53 @@ pub fn choose_with(
         return Choice { job: StepChoice::ANY.job(size, sampling), grids, estimate: 0.0 };
     }
     let tapes = Tapes::of_frame(program, frame);
-    let pilot = Pilot::new(frame, &tapes, size);
-    // What grids may add is left to them, where they are worth their while; what they do not use is for the steps.
-    let beside = (1.0 - PART * PART).sqrt() * max_error;
-    let search = Search::new(&pilot, beside);
-    let grids = choose_by(&pilot, program, &search.choice(beside).job(size, sampling), max_error, filled);
-    let taken = grids.iter().filter(|choice| choice.grid.is_some()).filter_map(|choice| choice.error);
-    let taken = taken.fold(0.0, f32::hypot);
-    let steps = search.choice((max_error * max_error - taken * taken).sqrt());
+    let mut lit = Frame { light_grids: coarse_grids(program, frame, &tapes, filled), ..frame.clone() };
+    let (mut grids, mut taken, mut steps) = (vec![GridChoice::default(); frame.lights.len()], 0.0, None);
+    if lit.light_grids.iter().any(Option::is_some) {
+        let pilot = Pilot::new(&lit, &tapes, size);
+        // What grids may add is left to them; what they do not use is for the steps.
+        let beside = (1.0 - PART * PART).sqrt() * max_error;
+        let search = Search::new(&pilot, beside);
+        let job = search.choice(beside).job(size, sampling);
+        let choices = choose_by(&pilot, program, &job, max_error, filled);
+        grids = choices.lights;
+        taken = grids.iter().filter_map(GridChoice::taken).fold(0.0, f32::hypot);
+        steps = (!choices.marches).then(|| search.choice(rest(max_error, taken)));
+    }
+    lit.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
+    let steps = steps.unwrap_or_else(|| {
+        // Where lights are marched to, their steps count.
+        let left = rest(max_error, taken);
+        Search::new(&Pilot::new(&lit, &tapes, size), left).choice(left)
+    });
     let job = steps.job(size, sampling);
-    frame.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
+    frame.light_grids = lit.light_grids;
     Choice { job, grids, estimate: steps.estimate.hypot(taken) }
+}
+
+/// The error that is left beside another one, if both are independent.
+fn rest(max_error: f32, taken: f32) -> f32 {
+    (max_error * max_error - taken * taken).sqrt()
+}
+
+/// Grids of all lights with shadows that can have one, good enough to find out how camera rays are to be sampled: their errors
+/// are the same for all steps.
+fn coarse_grids(
+    program: &Program,
+    frame: &Frame,
+    tapes: &Tapes,
+    filled: &mut FilledGrids,
+) -> Vec<Option<Arc<LightGrid>>> {
+    filled.begin(program, frame);
+    let plain = StepChoice::ANY.job([1, 1], Sampling::CENTRE);
+    let Some(bounds) = around(&Scene::<f32>::new(frame, &plain).media) else {
+        return vec![None; frame.lights.len()];
+    };
+    let shadow_step = bounds.diagonal() / COARSE_INTERVALS as f32;
+    let scene = plain_scene(frame, &Job { shadow_step, ..plain });
+    let grid = |light: &LightFrame| {
+        let layout = LightGrid::layout(light, &bounds, COARSE_INTERVALS).filter(|_| light.shadows)?;
+        Some(filled.fill(layout, &scene, || Batch::new(tapes, frame))?.0)
+    };
+    frame.lights.iter().map(grid).collect()
 }

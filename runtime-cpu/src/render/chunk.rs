@@ -64,6 +64,26 @@ impl<R: Real> Chunk<R> {
         self.is_open(slot).then(|| self.arriving.get(slot))
     }
 
+    /// Adds optical depths at places.
+    pub(super) fn deepen(&mut self, places: &[Place<R>], depths: &Colors<R>) {
+        let slots: Vec<usize> = places.iter().map(|place| self.slot(place)).collect();
+        for (row, depths) in self.depth.0.iter_mut().zip(&depths.0) {
+            for (&slot, &depth) in slots.iter().zip(depths) {
+                row[slot] = row[slot] + depth;
+            }
+        }
+    }
+
+    /// Adds the light of sources at places, `means` as of [`Chunk::means`].
+    pub(super) fn send(&mut self, places: &[Place<R>], sources: &Colors<R>, means: &Colors<R>) {
+        let slots: Vec<usize> = places.iter().map(|place| self.slot(place)).collect();
+        for (row, (sources, means)) in self.sent.0.iter_mut().zip(sources.0.iter().zip(&means.0)) {
+            for (&slot, &source) in slots.iter().zip(sources) {
+                row[slot] = row[slot] + source * means[slot];
+            }
+        }
+    }
+
     /// What leaves each slot of a source of 1 that is spread over its optical depth.
     pub(super) fn means(&self) -> Colors<R> {
         let mut means = Colors::splat(R::ZERO, self.depth.len());

@@ -18,8 +18,9 @@ use super::camera::{Ray, Span, slab};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::{Integrator, Medium};
+use crate::isa::Loop;
 use crate::real::{Real, add, splat, sub};
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use vol_compiler::frame::Quadrature;
 
 /// Most nodes of one ray: a medium without bounds ends after so many.
@@ -134,8 +135,43 @@ impl<R: Real> Combs<'_, R> {
         cursor.node <= self.whole[cursor.ray].last
     }
 
+    /// Those of the next `nodes` of each active ray that may be inside a medium, with some more before and behind.
+    pub(super) fn runs_of(
+        &self,
+        medium: usize,
+        active: &[Cursor],
+        nodes: i32,
+        [before, behind]: [i32; 2],
+    ) -> Vec<Run> {
+        let mut runs = Vec::with_capacity(active.len());
+        let mut start = 0;
+        for (which, cursor) in active.iter().enumerate() {
+            for NodeRange { first, last } in self.runs(medium, cursor, nodes) {
+                let end = start + (last - first + 1 + before + behind) as usize;
+                runs.push(Run { which, first: first - before, places: start..end });
+                start = end;
+            }
+        }
+        runs
+    }
+
+    /// Where the nodes of runs are, along their rays and in space; `held` between the ends of their rays or not.
+    pub(super) fn laid_out(
+        &self,
+        runs: &[Run],
+        rays: &[Ray<R>],
+        active: &[Cursor],
+        held: bool,
+    ) -> (Vec<R>, Points<R>) {
+        let count = runs.last().map_or(0, |run| run.places.end);
+        let (mut distances, mut points) = (vec![R::ZERO; count], Points::origins(count));
+        let (at, places) = (&mut distances, &mut points);
+        R::vectorized(LayOut { combs: self, runs, rays, active, held, distances: at, points: places });
+        (distances, points)
+    }
+
     /// Those of the next `nodes` that may be inside a medium.
-    pub(super) fn runs(
+    fn runs(
         &self,
         medium: usize,
         cursor: &Cursor,
@@ -149,6 +185,16 @@ impl<R: Real> Combs<'_, R> {
     }
 }
 
+/// Nodes of an active ray in a row.
+pub(super) struct Run {
+    /// Index of the ray.
+    pub(super) which: usize,
+    /// The first node.
+    pub(super) first: i32,
+    /// Where they are among the nodes of all runs.
+    pub(super) places: Range<usize>,
+}
+
 /// Nodes inside a medium.
 pub(crate) struct Inside<R> {
     /// Which they are.
@@ -157,6 +203,14 @@ pub(crate) struct Inside<R> {
     pub(crate) weights: Vec<R>,
     /// Where it is.
     pub(crate) points: Points<R>,
+}
+
+impl<R: Real> Inside<R> {
+    /// None yet, with room for some.
+    fn with_capacity(count: usize) -> Self {
+        let (places, weights) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        Self { places, weights, points: Points::with_capacity(count) }
+    }
 }
 
 /// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
@@ -169,6 +223,7 @@ fn first_node<R: Real>(quadrature: Quadrature, shift: R) -> R {
 }
 
 /// Distance of a node from the origin of the ray.
+#[inline(always)]
 fn node_distance<R: Real>(node: i32, step: R, offset: R) -> R {
     (R::from_index(node) + offset) * step
 }
@@ -196,6 +251,7 @@ fn node_ranges<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, en
 
 /// Part of the interval between two neighbouring nodes that the first stands for, given the signed
 /// distances of both.
+#[inline(always)]
 fn share<R: Real>(own: R, other: R, step: R) -> R {
     if other < R::ZERO { R::from_f32(0.5) * step } else { step * (own / (own - other)) }
 }
@@ -244,40 +300,107 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
     ) -> Inside<F::Real> {
         // Take the nodes in the medium's range and one more at either side.
-        let mut runs = Vec::with_capacity(active.len());
-        let (mut distances, mut points) = (Vec::new(), Points::new());
-        for (which, cursor) in active.iter().enumerate() {
-            for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
-                let start = distances.len();
-                distances.extend((first - 1..last + 2).map(|node| combs.distance(cursor.ray, node)));
-                points.extend_along(&rays[cursor.ray], &distances[start..]);
-                runs.push((which, first, start..distances.len()));
+        let runs = combs.runs_of(medium, active, self.batches.nodes, [1, 1]);
+        let (distances, points) = combs.laid_out(&runs, rays, active, false);
+        let mut walls = self.region(medium, &points);
+        let mut weights = vec![F::Real::ZERO; walls.len()];
+        let (runs, distances) = (&runs, &distances);
+        F::Real::vectorized(Weigh {
+            combs,
+            runs,
+            active,
+            distances,
+            walls: &mut walls,
+            weights: &mut weights,
+        });
+        // Keep those inside, with the length that each stands for.
+        let mut inside = Inside::with_capacity(walls.len());
+        for Run { which, first, places } in runs {
+            let (which, node) = (*which, active[*which].node);
+            let walls = &walls[places.clone()];
+            let last = walls.len() - 1;
+            let mut next = 1;
+            while let Some(begin) = (next..last).find(|&index| walls[index] < F::Real::ZERO) {
+                next = (begin..last).find(|&index| !(walls[index] < F::Real::ZERO)).unwrap_or(last);
+                let nodes = (first - node) as usize..;
+                let kept = places.start + begin..places.start + next;
+                inside.weights.extend_from_slice(&weights[kept.clone()]);
+                inside.points.extend_from(&points, kept.clone());
+                let places = nodes.skip(begin).zip(&distances[kept]);
+                inside.places.extend(places.map(|(node, &t)| Place { which, node: Some(node), t }));
             }
         }
-        let region = self.region(medium, &points);
-        // Keep those inside, with the length that each stands for.
-        let mut kept = Vec::with_capacity(points.len());
-        let mut walls = Vec::new();
-        for (which, first, run) in runs {
-            let Cursor { ray, node } = active[which];
-            let (before, end) = ((first - node) as usize, combs.ends[ray]);
-            let own = &distances[run.clone()];
-            walls.clear();
-            walls.extend(
-                region[run.clone()].iter().zip(own).map(|(region, &t)| region.max((t - end).max(-t))),
-            );
-            for (index, &[left, wall, right]) in walls.array_windows::<3>().enumerate() {
-                if wall < F::Real::ZERO {
-                    let place = Place { which, node: Some(before + index), t: own[index + 1] };
-                    let weight = share(wall, left, combs.step) + share(wall, right, combs.step);
-                    kept.push((place, weight, run.start + index + 1));
+        inside
+    }
+}
+
+/// Makes of signed distances of a region those of the part of it that is between the ends of the ray, and finds what length of
+/// ray each node inside stands for.
+struct Weigh<'a, 'c, R> {
+    combs: &'a Combs<'c, R>,
+    runs: &'a [Run],
+    active: &'a [Cursor],
+    distances: &'a [R],
+    walls: &'a mut [R],
+    weights: &'a mut [R],
+}
+
+impl<R: Real> Loop for Weigh<'_, '_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let step = self.combs.step;
+        for Run { which, first: _, places } in self.runs {
+            let end = self.combs.ends[self.active[*which].ray];
+            let walls = &mut self.walls[places.clone()];
+            for (wall, &t) in walls.iter_mut().zip(&self.distances[places.clone()]) {
+                *wall = wall.max((t - end).max(-t));
+            }
+            // Of the first and the last node nobody asks.
+            let weights = &mut self.weights[places.start + 1..places.end - 1];
+            for (index, weight) in weights.iter_mut().enumerate() {
+                let [left, wall, right] = [walls[index], walls[index + 1], walls[index + 2]];
+                *weight = share(wall, left, step) + share(wall, right, step);
+            }
+        }
+    }
+}
+
+/// Fills in distances of nodes and their places.
+struct LayOut<'a, 'c, R> {
+    combs: &'a Combs<'c, R>,
+    runs: &'a [Run],
+    rays: &'a [Ray<R>],
+    active: &'a [Cursor],
+    held: bool,
+    distances: &'a mut [R],
+    points: &'a mut Points<R>,
+}
+
+impl<R: Real> Loop for LayOut<'_, '_, R> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for Run { which, first, places } in self.runs {
+            let index = self.active[*which].ray;
+            let (ray, offset, end) = (&self.rays[index], self.combs.offsets[index], self.combs.ends[index]);
+            let distances = &mut self.distances[places.clone()];
+            for (distance, node) in distances.iter_mut().zip(*first..) {
+                *distance = node_distance(node, self.combs.step, offset);
+            }
+            if self.held {
+                for distance in &mut *distances {
+                    *distance = distance.max(R::ZERO).min(end);
                 }
             }
-        }
-        Inside {
-            places: kept.iter().map(|&(place, ..)| place).collect(),
-            weights: kept.iter().map(|&(_, weight, _)| weight).collect(),
-            points: kept.iter().map(|&(.., index)| points.get(index)).collect(),
+            for (axis, row) in self.points.rows().into_iter().enumerate() {
+                let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
+                for (value, &t) in row[places.clone()].iter_mut().zip(&*distances) {
+                    *value = origin + direction * t;
+                }
+            }
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Where the integrator gets the values of a program's functions from.
 
-use super::camera::Ray;
 use crate::interp::{Evaluator, Tapes};
 use crate::real::{Real, Vec3, add};
+use std::ops::Range;
 use vol_compiler::frame::Frame;
 use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Program;
@@ -84,12 +84,29 @@ impl<R: Real> Points<R> {
         }
     }
 
-    /// Adds those at distances along a ray.
-    pub(crate) fn extend_along(&mut self, ray: &Ray<R>, distances: &[R]) {
-        for (axis, values) in [&mut self.x, &mut self.y, &mut self.z].into_iter().enumerate() {
-            let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
-            values.extend(distances.iter().map(|&t| origin + direction * t));
-        }
+    /// None yet, with room for some.
+    pub(crate) fn with_capacity(count: usize) -> Self {
+        let [x, y, z] = std::array::from_fn(|_| Vec::with_capacity(count));
+        Self { x, y, z }
+    }
+
+    /// As many, all at the origin.
+    pub(crate) fn origins(count: usize) -> Self {
+        let [x, y, z] = std::array::from_fn(|_| vec![R::ZERO; count]);
+        Self { x, y, z }
+    }
+
+    /// Adds some of others.
+    pub(crate) fn extend_from(&mut self, others: &Self, range: Range<usize>) {
+        self.x.extend_from_slice(&others.x[range.clone()]);
+        self.y.extend_from_slice(&others.y[range.clone()]);
+        self.z.extend_from_slice(&others.z[range]);
+    }
+
+    /// Coordinates along each axis.
+    #[inline(always)]
+    pub(crate) fn rows(&mut self) -> [&mut [R]; 3] {
+        [&mut self.x, &mut self.y, &mut self.z]
     }
 
     /// How many there are.
@@ -107,8 +124,7 @@ impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
     fn from_iter<I: IntoIterator<Item = Vec3<R>>>(points: I) -> Self {
         let mut points = points.into_iter();
         // Those that are sure to come need no room made one by one.
-        let [x, y, z] = std::array::from_fn(|_| vec![R::ZERO; points.size_hint().0]);
-        let mut all = Self { x, y, z };
+        let mut all = Self::origins(points.size_hint().0);
         let places = all.x.iter_mut().zip(&mut all.y).zip(&mut all.z);
         for (((x, y), z), point) in places.zip(&mut points) {
             [*x, *y, *z] = point;

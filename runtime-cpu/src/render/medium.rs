@@ -19,8 +19,9 @@ use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
 use super::styled::StyledRays;
 use crate::isa::Loop;
-use crate::real::{Real, Vec3, largest, mul, splat};
+use crate::real::{Real, Vec3, largest, splat};
 use vol_compiler::frame::Quadrature;
+use vol_compiler::program::Lighting;
 
 /// Place of the extinction among the outputs of [`vol_compiler::program::Medium::interior`]: the scattering is before it,
 /// the emission behind.
@@ -96,10 +97,7 @@ impl<F: Fields> Integrator<'_, F> {
         // Add up what they send.
         let means = chunk.means();
         for filling in &fillings {
-            for (index, place) in filling.places.iter().enumerate() {
-                let slot = chunk.slot(place);
-                chunk.sent.add(slot, mul(filling.source.get(index), means.get(slot)));
-            }
+            chunk.send(&filling.places, &filling.source, &means);
         }
         chunk
     }
@@ -121,12 +119,18 @@ impl<F: Fields> Integrator<'_, F> {
         let mut fillings: Vec<_> = fillings.collect();
         chunk.transmit(active, glows);
         for filling in &mut fillings {
+            if self.scene.media[filling.medium].lighting == Lighting::None {
+                filling.lit = vec![false; filling.places.len()];
+                continue;
+            }
             let places = filling.places.iter().enumerate();
             let lit = places.map(|(index, place)| {
                 chunk.is_open(chunk.slot(place)) && scatters(filling.scatter.get(index))
             });
             filling.lit = lit.collect();
-            if only.is_some() {
+        }
+        if only.is_some() {
+            for filling in &mut fillings {
                 filling.source = Colors::splat(F::Real::ZERO, filling.places.len());
             }
         }
@@ -152,10 +156,7 @@ impl<F: Fields> Integrator<'_, F> {
         F::Real::vectorized(PerMass { density: &density, masses: &mut masses, values: &mut values });
         let [a, b, c, d, e, f, g, h, i] = values;
         let [scatter, extinction, source] = [[a, b, c], [d, e, f], [g, h, i]].map(Colors);
-        for (index, place) in places.iter().enumerate() {
-            let slot = chunk.slot(place);
-            chunk.depth.add(slot, extinction.get(index));
-        }
+        chunk.deepen(&places, &extinction);
         Filling { medium, places, points, scatter, lit: Vec::new(), source }
     }
 }

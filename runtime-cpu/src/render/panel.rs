@@ -20,7 +20,7 @@
 
 use super::camera::Ray;
 use super::chord::{Chord, Gap};
-use super::comb::{Combs, Cursor, NodeRange};
+use super::comb::{Combs, Cursor, Run};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::Integrator;
@@ -179,24 +179,14 @@ impl<F: Fields> Integrator<'_, F> {
         active: &[Cursor],
     ) -> Found<F::Real> {
         // Take the nodes of the panels in the medium's range.
-        let mut runs = Vec::with_capacity(active.len());
-        let (mut distances, mut points) = (Vec::new(), Points::new());
-        for (which, cursor) in active.iter().enumerate() {
-            let end = combs.ends[cursor.ray];
-            for NodeRange { first, last } in combs.runs(medium, cursor, self.batches.nodes) {
-                let start = distances.len();
-                runs.push((which, first, start..start + (last - first) as usize + 2));
-                let nodes = (first..last + 2).map(|node| combs.distance(cursor.ray, node));
-                distances.extend(nodes.map(|t| t.max(F::Real::ZERO).min(end)));
-                points.extend_along(&rays[cursor.ray], &distances[start..]);
-            }
-        }
+        let runs = combs.runs_of(medium, active, self.batches.nodes, [0, 1]);
+        let (distances, points) = combs.laid_out(&runs, rays, active, true);
         let region = self.region(medium, &points);
         let is_inside = |index: usize| region[index] < F::Real::ZERO;
         let nodes = (0..region.len()).filter(|&index| is_inside(index)).count();
         let (mut places, mut stretches) = (Vec::with_capacity(nodes), Vec::with_capacity(region.len()));
         let (mut crossings, mut gaps) = (Vec::new(), Vec::new());
-        for (which, first, run) in runs {
+        for Run { which, first, places: run } in runs {
             let Cursor { ray, node } = active[which];
             let place = |index: usize| {
                 let node = first - node + (index - run.start) as i32;

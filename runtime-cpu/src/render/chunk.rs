@@ -125,8 +125,9 @@ impl<R: Real> Chunk<R> {
 
 #[inline(always)]
 fn is_open<R: Real>(transmittance: Vec3<R>, stop: R) -> bool {
+    let is_dark = largest(transmittance) < stop;
     // Also if it is no number, so that it is seen.
-    !(largest(transmittance) < stop)
+    !is_dark
 }
 
 struct Means<'a, R> {
@@ -183,12 +184,12 @@ impl<R: Real> Loop for Transmit<'_, R> {
             for node in 0..*nodes {
                 let slot = node * *width + first;
                 let open = open(&transmittance, *stop);
-                for channel in 0..3 {
-                    arriving.0[channel][slot..slot + LANES].copy_from_slice(&transmittance[channel]);
+                for (channel, transmittance) in transmittance.iter_mut().enumerate() {
+                    arriving.0[channel][slot..slot + LANES].copy_from_slice(transmittance);
                     let decay = lanes(&decay.0[channel], slot);
                     for lane in 0..LANES {
-                        let t = transmittance[channel][lane];
-                        transmittance[channel][lane] = if open[lane] { t * decay[lane] } else { t };
+                        let t = transmittance[lane];
+                        transmittance[lane] = if open[lane] { t * decay[lane] } else { t };
                     }
                 }
             }

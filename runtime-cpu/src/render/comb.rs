@@ -320,13 +320,14 @@ impl<F: Fields> Integrator<'_, F> {
             let walls = &walls[places.clone()];
             let last = walls.len() - 1;
             let mut next = 1;
-            while let Some(begin) = (next..last).find(|&index| walls[index] < F::Real::ZERO) {
-                next = (begin..last).find(|&index| !(walls[index] < F::Real::ZERO)).unwrap_or(last);
-                let nodes = (first - node) as usize..;
+            let is_inside = |&index: &usize| walls[index] < F::Real::ZERO;
+            while let Some(begin) = (next..last).find(is_inside) {
+                next = (begin..last).find(|index| !is_inside(index)).unwrap_or(last);
                 let kept = places.start + begin..places.start + next;
                 inside.weights.extend_from_slice(&weights[kept.clone()]);
                 inside.points.extend_from(&points, kept.clone());
-                let places = nodes.skip(begin).zip(&distances[kept]);
+                let nodes = (first - node + begin as i32) as usize..;
+                let places = nodes.zip(&distances[kept]);
                 inside.places.extend(places.map(|(node, &t)| Place { which, node: Some(node), t }));
             }
         }

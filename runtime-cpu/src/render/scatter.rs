@@ -107,19 +107,24 @@ impl<F: Fields> Integrator<'_, F> {
         filling: &Filling<F::Real>,
         some: &[usize],
     ) -> Vec<F::Real> {
-        let ray = |which: usize| rays[active[which].ray].direction;
-        let which = |&place: &usize| filling.places[place].which;
+        let which = |place: &usize| filling.places[*place].which;
+        let toward = |place: &usize| arriving(light, filling.points.get(*place)).direction;
+        let angle = |place: &usize| turn(toward(place), rays[active[which(place)].ray].direction);
         // The light of a distant lamp turns by one angle all along a ray.
-        let once = light.distant && some.len() > active.len();
-        let turns: Vec<_> = if once {
-            (0..active.len()).map(|which| turn(light.position, ray(which))).collect()
-        } else {
-            let lamp = |place: usize| arriving(light, filling.points.get(place)).direction;
-            some.iter().map(|place| turn(lamp(*place), ray(which(place)))).collect()
-        };
+        let mut asked: Vec<usize> = some.to_vec();
+        if light.distant {
+            let mut is_known = vec![false; active.len()];
+            asked.retain(|place| !std::mem::replace(&mut is_known[which(place)], true));
+        }
+        let turns: Vec<_> = asked.iter().map(angle).collect();
         let [less, more]: [Vec<_>; 2] = [0, 1].map(|side| turns.iter().map(|turn| turn[side]).collect());
         let [phases] = self.fields.apply(self.scene.media[filling.medium].phase, &[&less, &more]);
-        if once { some.iter().map(|place| phases[which(place)]).collect() } else { phases }
+        if !light.distant {
+            return phases;
+        }
+        let mut of_rays = vec![F::Real::ZERO; active.len()];
+        asked.iter().zip(phases).for_each(|(place, phase)| of_rays[which(place)] = phase);
+        some.iter().map(|place| of_rays[which(place)]).collect()
     }
 
     /// Fraction of a lamp's light that arrives at each place of each medium that needs to know. Media

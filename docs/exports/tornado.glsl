@@ -156,7 +156,7 @@ struct Vol_in_Around {
     float gap;
 };
 struct Vol_in_Stencil {
-    uvec4 at;
+    ivec4 at;
     vec4 weights;
 };
 struct Vol_in_Runs {
@@ -218,7 +218,7 @@ struct Vol_in_Chunk {
 const vec4 vol_uniforms[7] = vec4[7](vec4(0.0, 0.0033465358, 0.0051815165, 0.014443844), vec4(10.0, 30.0, 1.0, 1.1), vec4(4.5, 0.6981317, 0.0, 0.4), vec4(0.2, 2.2, 1.5609045, 0.69090724), vec4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), vec4(1.1264106, 5.0, 0.0, 0.0), vec4(-0.4, 0.8, 0.3, 12.0));
 const vec4 vol_curves[45] = vec4[45](vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, 0.055, 0.0, -0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, -0.5, 1.1295928), vec4(-1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 0.0, 1.0, 2.2591856), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.33686078, 0.9263671), vec4(0.16843039, -0.33686078, 0.9263671, -0.16843039), vec4(-4.5778493e-6, -4.598711e-6, -4.576359e-6, 0.20000459), vec4(1.1000047, 0.10000458, 0.0, 0.0), vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, -0.055, 0.0, 0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, 0.5, 1.1295928), vec4(1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 1.0, 0.0, 2.2591856), vec4(0.0, 2.2, 0.0, 0.0), vec4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), vec4(-0.16843039, 0.0, 1.0, 0.0), vec4(-4.5778493e-6, 1.0999953, -4.576359e-6, 0.20000459), vec4(2.2000048, 0.10000458, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
 const uvec4 vol_permutation[64] = uvec4[64](uvec4(151u, 160u, 137u, 91u), uvec4(90u, 15u, 131u, 13u), uvec4(201u, 95u, 96u, 53u), uvec4(194u, 233u, 7u, 225u), uvec4(140u, 36u, 103u, 30u), uvec4(69u, 142u, 8u, 99u), uvec4(37u, 240u, 21u, 10u), uvec4(23u, 190u, 6u, 148u), uvec4(247u, 120u, 234u, 75u), uvec4(0u, 26u, 197u, 62u), uvec4(94u, 252u, 219u, 203u), uvec4(117u, 35u, 11u, 32u), uvec4(57u, 177u, 33u, 88u), uvec4(237u, 149u, 56u, 87u), uvec4(174u, 20u, 125u, 136u), uvec4(171u, 168u, 68u, 175u), uvec4(74u, 165u, 71u, 134u), uvec4(139u, 48u, 27u, 166u), uvec4(77u, 146u, 158u, 231u), uvec4(83u, 111u, 229u, 122u), uvec4(60u, 211u, 133u, 230u), uvec4(220u, 105u, 92u, 41u), uvec4(55u, 46u, 245u, 40u), uvec4(244u, 102u, 143u, 54u), uvec4(65u, 25u, 63u, 161u), uvec4(1u, 216u, 80u, 73u), uvec4(209u, 76u, 132u, 187u), uvec4(208u, 89u, 18u, 169u), uvec4(200u, 196u, 135u, 130u), uvec4(116u, 188u, 159u, 86u), uvec4(164u, 100u, 109u, 198u), uvec4(173u, 186u, 3u, 64u), uvec4(52u, 217u, 226u, 250u), uvec4(124u, 123u, 5u, 202u), uvec4(38u, 147u, 118u, 126u), uvec4(255u, 82u, 85u, 212u), uvec4(207u, 206u, 59u, 227u), uvec4(47u, 16u, 58u, 17u), uvec4(182u, 189u, 28u, 42u), uvec4(223u, 183u, 170u, 213u), uvec4(119u, 248u, 152u, 2u), uvec4(44u, 154u, 163u, 70u), uvec4(221u, 153u, 101u, 155u), uvec4(167u, 43u, 172u, 9u), uvec4(129u, 22u, 39u, 253u), uvec4(19u, 98u, 108u, 110u), uvec4(79u, 113u, 224u, 232u), uvec4(178u, 185u, 112u, 104u), uvec4(218u, 246u, 97u, 228u), uvec4(251u, 34u, 242u, 193u), uvec4(238u, 210u, 144u, 12u), uvec4(191u, 179u, 162u, 241u), uvec4(81u, 51u, 145u, 235u), uvec4(249u, 14u, 239u, 107u), uvec4(49u, 192u, 214u, 31u), uvec4(181u, 199u, 106u, 157u), uvec4(184u, 84u, 204u, 176u), uvec4(115u, 121u, 50u, 45u), uvec4(127u, 4u, 150u, 254u), uvec4(138u, 236u, 205u, 93u), uvec4(222u, 114u, 67u, 29u), uvec4(24u, 72u, 243u, 141u), uvec4(128u, 195u, 78u, 66u), uvec4(215u, 61u, 156u, 180u));
-const vec4 vol_frame[43] = vec4[43](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004639909, 0.009279818), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 16.0, 1.0), vec4(-0.42399916, 0.8479983, 0.31799936, 12.0), vec4(12.0, 12.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, -0.07849332), vec4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), vec4(0.10467947, -0.038403668, 0.107851274, -0.064069755), vec4(0.1727788, 0.3046489, 0.13125731, -0.008553555), vec4(0.24621235, -0.05407174, 0.21792875, 0.44128785), vec4(0.15875934, 0.010998466, 0.3846571, -0.051262047), vec4(0.26087677, 0.57784307, 0.18719967, 0.020236308), vec4(0.52379215, -0.05564443, 0.30163896, 0.71370804), vec4(0.21658209, 0.019191828, 0.6642433, -0.067210674), vec4(0.3401835, 0.84825695, 0.24689835, 0.007948153), vec4(0.8066414, -0.08580606, 0.3764272, 0.98085874), vec4(0.27799374, -0.0131498, 0.9516064, -0.1115874), vec4(0.41002518, 1.1108938, 0.3100251, -0.04768115), vec4(1.087319, -0.14611875, 0.44455653, 1.2501811), vec4(0.34455645, -0.0956435, 1.2085621, -0.1894001), vec4(0.48001888, 1.403938, 0.3815878, -0.15293887), vec4(1.3255475, -0.23986568, 0.5123142, 1.5619527), vec4(0.41955334, -0.21955688, 1.4378978, -0.29706544), vec4(0.5414322, 1.7246025, 0.4580031, -0.29523104), vec4(1.5453081, -0.36114627, 0.5671063, 1.8921922), vec4(0.4970839, -0.37969407, 1.6475452, -0.43204588), vec4(0.5890693, 2.0649552, 0.53673345, -0.47268757), vec4(1.7444439, -0.5097059, 0.6070627, 2.2430565), vec4(0.57689345, -0.5739689, 1.8359008, -0.5940731), vec4(0.62084395, 2.4265997, 0.6175107, 0.0));
+const vec4 vol_frame[43] = vec4[43](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004680485, 0.00936097), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 16.0, 1.0), vec4(-0.42399916, 0.8479983, 0.31799936, 12.0), vec4(12.0, 12.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, -0.07849332), vec4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), vec4(0.10467947, -0.038403668, 0.107851274, -0.064069755), vec4(0.1727788, 0.3046489, 0.13125731, -0.008553555), vec4(0.24621235, -0.05407174, 0.21792875, 0.44128785), vec4(0.15875934, 0.010998466, 0.3846571, -0.051262047), vec4(0.26087677, 0.57784307, 0.18719967, 0.020236308), vec4(0.52379215, -0.05564443, 0.30163896, 0.71370804), vec4(0.21658209, 0.019191828, 0.6642433, -0.067210674), vec4(0.3401835, 0.84825695, 0.24689835, 0.007948153), vec4(0.8066414, -0.08580606, 0.3764272, 0.98085874), vec4(0.27799374, -0.0131498, 0.9516064, -0.1115874), vec4(0.41002518, 1.1108938, 0.3100251, -0.04768115), vec4(1.087319, -0.14611875, 0.44455653, 1.2501811), vec4(0.34455645, -0.0956435, 1.2085621, -0.1894001), vec4(0.48001888, 1.403938, 0.3815878, -0.15293887), vec4(1.3255475, -0.23986568, 0.5123142, 1.5619527), vec4(0.41955334, -0.21955688, 1.4378978, -0.29706544), vec4(0.5414322, 1.7246025, 0.4580031, -0.29523104), vec4(1.5453081, -0.36114627, 0.5671063, 1.8921922), vec4(0.4970839, -0.37969407, 1.6475452, -0.43204588), vec4(0.5890693, 2.0649552, 0.53673345, -0.47268757), vec4(1.7444439, -0.5097059, 0.6070627, 2.2430565), vec4(0.57689345, -0.5739689, 1.8359008, -0.5940731), vec4(0.62084395, 2.4265997, 0.6175107, 0.0));
 const vec4 vol_input[1] = vec4[1](vec4(0.0, 0.0, 0.0, 0.0));
 const uint VOL_CURVES = 1u;
 const float VOL_SMALLEST = 1.1754944e-38;
@@ -272,7 +272,7 @@ const uint VOL_IN_AT_MEDIA = 27u;
 const uint VOL_IN_AT_LIGHTS = 35u;
 const uint VOL_IN_AT_CELLS = 75u;
 const uint VOL_IN_ROW_WORDS = 0u;
-const bool VOL_IN_CORRECTED = true;
+const bool VOL_IN_CORRECTED = false;
 const bool VOL_IN_SOFT_LIGHTS = false;
 const bool VOL_IN_OCCLUDING_LIGHTS = false;
 const bool VOL_IN_LIGHT_GRIDS = true;
@@ -2449,7 +2449,7 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
     return (_e5 ? 0.0 : 1.0);
 }
 
-Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words, bool spline) {
+Vol_in_Stencil vol_in_stencil(float place_2, float last_2, bool spline) {
     float index_22 = min(floor(place_2), (last_2 - 1.0));
     float t_39 = (place_2 - index_22);
     vec4 local_12 = vec4(((((1.0 - (0.5 * t_39)) * t_39) - 0.5) * t_39), (((((1.5 * t_39) - 2.5) * t_39) * t_39) + 1.0), ((((2.0 - (1.5 * t_39)) * t_39) + 0.5) * t_39), ((((0.5 * t_39) - 0.5) * t_39) * t_39));
@@ -2457,10 +2457,10 @@ Vol_in_Stencil vol_in_stencil(float place_2, float last_2, uint words, bool spli
     vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
     vec4 weights_8 = (spline ? through : local_12);
     ivec4 around = (ivec4(int(index_22)) + ivec4(-1, 0, 1, 2));
-    return Vol_in_Stencil((uvec4(min(max(around, ivec4(0)), ivec4(int(last_2)))) * words), weights_8);
+    return Vol_in_Stencil(min(max(around, ivec4(0)), ivec4(int(last_2))), weights_8);
 }
 
-float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, uint channels) {
+float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, int columns, uint channel, uint channels) {
     vec4 sums = vec4(0.0);
     uint i_4 = 0u;
     uint j_3 = 0u;
@@ -2468,12 +2468,12 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
     bool loop_init_21 = true;
     while(true) {
         if (!loop_init_21) {
-            uint _e54 = i_4;
-            i_4 = (_e54 + 1u);
+            uint _e82 = i_4;
+            i_4 = (_e82 + 1u);
         }
         loop_init_21 = false;
-        uint _e14 = i_4;
-        if ((_e14 < four)) {
+        uint _e16 = i_4;
+        if ((_e16 < four)) {
         } else {
             break;
         }
@@ -2482,40 +2482,47 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
             bool loop_init_22 = true;
             while(true) {
                 if (!loop_init_22) {
-                    uint _e51 = j_3;
-                    j_3 = (_e51 + 1u);
+                    uint _e79 = j_3;
+                    j_3 = (_e79 + 1u);
                 }
                 loop_init_22 = false;
-                uint _e18 = j_3;
-                if ((_e18 < four)) {
+                uint _e20 = j_3;
+                if ((_e20 < four)) {
                 } else {
                     break;
                 }
                 {
-                    uint _e21 = i_4;
-                    uint _e25 = j_3;
-                    uvec4 row = (uvec4(((first + x_22.at[_e21]) + y_7.at[_e25])) + z_5.at);
-                    float _e32 = vol_input_word(row.x);
-                    float _e34 = vol_input_word(row.y);
-                    float _e36 = vol_input_word(row.z);
-                    float _e38 = vol_input_word(row.w);
-                    vec4 depths = vec4(_e32, _e34, _e36, _e38);
-                    vec4 _e40 = sums;
-                    uint _e42 = i_4;
-                    uint _e45 = j_3;
-                    sums = (_e40 + ((x_22.weights[_e42] * y_7.weights[_e45]) * depths));
+                    uint _e24 = i_4;
+                    uint _e28 = j_3;
+                    uint column = (first + (3u * uint(((x_22.at[_e24] * columns) + y_7.at[_e28]))));
+                    float _e34 = vol_input_word(column);
+                    int begin = int(_e34);
+                    float _e38 = vol_input_word((column + 1u));
+                    int more_1 = int(_e38);
+                    float _e43 = vol_input_word((column + 2u));
+                    uint depths = ((first + (4u * uint(_e43))) + channel);
+                    uvec4 row = ((uvec4(min(max((z_5.at - ivec4(begin)), ivec4(0)), ivec4(more_1))) * channels) + uvec4(depths));
+                    float _e60 = vol_input_word(row.x);
+                    float _e62 = vol_input_word(row.y);
+                    float _e64 = vol_input_word(row.z);
+                    float _e66 = vol_input_word(row.w);
+                    vec4 around_1 = vec4(_e60, _e62, _e64, _e66);
+                    vec4 _e68 = sums;
+                    uint _e70 = i_4;
+                    uint _e73 = j_3;
+                    sums = (_e68 + ((x_22.weights[_e70] * y_7.weights[_e73]) * around_1));
                 }
             }
         }
     }
-    vec4 _e57 = sums;
-    vec4 weighted = (z_5.weights * _e57);
+    vec4 _e85 = sums;
+    vec4 weighted = (z_5.weights * _e85);
     return max((((weighted.x + weighted.y) + weighted.z) + weighted.w), 0.0);
 }
 
 vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     vec3 depth = vec3(0.0);
-    uint channel = 0u;
+    uint channel_1 = 0u;
     vec3 _e4 = vol_in_word3_((grid + 1u));
     vec3 _e7 = vol_in_word3_((grid + 13u));
     vec3 _e10 = vol_in_word3_((grid + 16u));
@@ -2541,37 +2548,36 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     }
     float _e74 = vol_frame_word((grid + 25u));
     uint channels_1 = uint(_e74);
-    uint column = (channels_1 * uint(_e13.z));
-    float _e81 = vol_frame_word((grid + 27u));
-    bool spline_1 = (_e81 != 0.0);
-    Vol_in_Stencil _e89 = vol_in_stencil(place_12.x, last_7.x, (column * uint(_e13.y)), spline_1);
-    Vol_in_Stencil _e92 = vol_in_stencil(place_12.y, last_7.y, column, spline_1);
-    Vol_in_Stencil _e97 = vol_in_stencil(min(place_12.z, last_7.z), last_7.z, channels_1, spline_1);
-    float _e100 = vol_frame_word((grid + 26u));
-    uint first_5 = uint(_e100);
-    vec3 _e104 = vol_in_word3_((grid + 22u));
+    float _e78 = vol_frame_word((grid + 27u));
+    bool spline_1 = (_e78 != 0.0);
+    Vol_in_Stencil _e83 = vol_in_stencil(place_12.x, last_7.x, spline_1);
+    Vol_in_Stencil _e86 = vol_in_stencil(place_12.y, last_7.y, spline_1);
+    Vol_in_Stencil _e91 = vol_in_stencil(min(place_12.z, last_7.z), last_7.z, spline_1);
+    float _e94 = vol_frame_word((grid + 26u));
+    uint first_5 = uint(_e94);
+    vec3 _e98 = vol_in_word3_((grid + 22u));
     bool loop_init_23 = true;
     while(true) {
         if (!loop_init_23) {
-            uint _e118 = channel;
-            channel = (_e118 + 1u);
+            uint _e113 = channel_1;
+            channel_1 = (_e113 + 1u);
         }
         loop_init_23 = false;
-        uint _e110 = channel;
-        if ((_e110 < channels_1)) {
+        uint _e104 = channel_1;
+        if ((_e104 < channels_1)) {
         } else {
             break;
         }
         {
-            uint _e112 = channel;
-            uint _e114 = channel;
-            float _e116 = vol_in_grid_channel((first_5 + _e114), _e89, _e92, _e97, channels_1);
-            depth[_e112] = _e116;
+            uint _e106 = channel_1;
+            uint _e110 = channel_1;
+            float _e111 = vol_in_grid_channel(first_5, _e83, _e86, _e91, int(_e13.y), _e110, channels_1);
+            depth[_e106] = _e111;
         }
     }
-    vec3 _e120 = depth;
-    float _e122 = depth.x;
-    return (_e104 * ((channels_1 == 1u) ? vec3(_e122) : _e120));
+    vec3 _e115 = depth;
+    float _e117 = depth.x;
+    return (_e98 * ((channels_1 == 1u) ? vec3(_e117) : _e115));
 }
 
 float vol_in_first_node(float shift) {

@@ -212,7 +212,7 @@ struct Vol_in_Around {
 };
 
 struct Vol_in_Stencil {
-    uint4 at;
+    int4 at;
     float4 weights;
 };
 
@@ -350,7 +350,7 @@ ret_Constructarray5_float_ Constructarray5_float_(float arg0, float arg1, float 
 static const float4 vol_uniforms[7] = Constructarray7_float4_(float4(0.0, 0.0033465358, 0.0051815165, 0.014443844), float4(10.0, 30.0, 1.0, 1.1), float4(4.5, 0.6981317, 0.0, 0.4), float4(0.2, 2.2, 1.5609045, 0.69090724), float4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), float4(1.1264106, 5.0, 0.0, 0.0), float4(-0.4, 0.8, 0.3, 12.0));
 static const float4 vol_curves[45] = Constructarray45_float4_(float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, 0.055, 0.0, -0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, -0.5, 1.1295928), float4(-1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 0.0, 1.0, 2.2591856), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.33686078, 0.9263671), float4(0.16843039, -0.33686078, 0.9263671, -0.16843039), float4(-4.5778493e-6, -4.598711e-6, -4.576359e-6, 0.20000459), float4(1.1000047, 0.10000458, 0.0, 0.0), float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, -0.055, 0.0, 0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, 0.5, 1.1295928), float4(1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 1.0, 0.0, 2.2591856), float4(0.0, 2.2, 0.0, 0.0), float4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), float4(-0.16843039, 0.0, 1.0, 0.0), float4(-4.5778493e-6, 1.0999953, -4.576359e-6, 0.20000459), float4(2.2000048, 0.10000458, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0));
 static const uint4 vol_permutation[64] = Constructarray64_uint4_(uint4(151u, 160u, 137u, 91u), uint4(90u, 15u, 131u, 13u), uint4(201u, 95u, 96u, 53u), uint4(194u, 233u, 7u, 225u), uint4(140u, 36u, 103u, 30u), uint4(69u, 142u, 8u, 99u), uint4(37u, 240u, 21u, 10u), uint4(23u, 190u, 6u, 148u), uint4(247u, 120u, 234u, 75u), uint4(0u, 26u, 197u, 62u), uint4(94u, 252u, 219u, 203u), uint4(117u, 35u, 11u, 32u), uint4(57u, 177u, 33u, 88u), uint4(237u, 149u, 56u, 87u), uint4(174u, 20u, 125u, 136u), uint4(171u, 168u, 68u, 175u), uint4(74u, 165u, 71u, 134u), uint4(139u, 48u, 27u, 166u), uint4(77u, 146u, 158u, 231u), uint4(83u, 111u, 229u, 122u), uint4(60u, 211u, 133u, 230u), uint4(220u, 105u, 92u, 41u), uint4(55u, 46u, 245u, 40u), uint4(244u, 102u, 143u, 54u), uint4(65u, 25u, 63u, 161u), uint4(1u, 216u, 80u, 73u), uint4(209u, 76u, 132u, 187u), uint4(208u, 89u, 18u, 169u), uint4(200u, 196u, 135u, 130u), uint4(116u, 188u, 159u, 86u), uint4(164u, 100u, 109u, 198u), uint4(173u, 186u, 3u, 64u), uint4(52u, 217u, 226u, 250u), uint4(124u, 123u, 5u, 202u), uint4(38u, 147u, 118u, 126u), uint4(255u, 82u, 85u, 212u), uint4(207u, 206u, 59u, 227u), uint4(47u, 16u, 58u, 17u), uint4(182u, 189u, 28u, 42u), uint4(223u, 183u, 170u, 213u), uint4(119u, 248u, 152u, 2u), uint4(44u, 154u, 163u, 70u), uint4(221u, 153u, 101u, 155u), uint4(167u, 43u, 172u, 9u), uint4(129u, 22u, 39u, 253u), uint4(19u, 98u, 108u, 110u), uint4(79u, 113u, 224u, 232u), uint4(178u, 185u, 112u, 104u), uint4(218u, 246u, 97u, 228u), uint4(251u, 34u, 242u, 193u), uint4(238u, 210u, 144u, 12u), uint4(191u, 179u, 162u, 241u), uint4(81u, 51u, 145u, 235u), uint4(249u, 14u, 239u, 107u), uint4(49u, 192u, 214u, 31u), uint4(181u, 199u, 106u, 157u), uint4(184u, 84u, 204u, 176u), uint4(115u, 121u, 50u, 45u), uint4(127u, 4u, 150u, 254u), uint4(138u, 236u, 205u, 93u), uint4(222u, 114u, 67u, 29u), uint4(24u, 72u, 243u, 141u), uint4(128u, 195u, 78u, 66u), uint4(215u, 61u, 156u, 180u));
-static const float4 vol_frame[43] = Constructarray43_float4_(float4(0.0, 0.0, 960.0, 540.0), float4(960.0, 540.0, 0.004639909, 0.009279818), float4(0.0, 1.1, 4.5, 0.0), float4(0.0, -1.0, 0.6470582, 0.0), float4(0.0, 0.0, 0.36397022, 0.0), float4(0.0033465358, 0.0051815165, 0.014443844, 1.0), float4(1.0, 0.0, 1.0, 3.0), float4(-0.60002863, -0.60002863, -0.60002863, 1.000029), float4(2.8000307, 0.8000288, 16.0, 1.0), float4(-0.42399916, 0.8479983, 0.31799936, 12.0), float4(12.0, 12.0, 1.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, -0.07849332), float4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), float4(0.10467947, -0.038403668, 0.107851274, -0.064069755), float4(0.1727788, 0.3046489, 0.13125731, -0.008553555), float4(0.24621235, -0.05407174, 0.21792875, 0.44128785), float4(0.15875934, 0.010998466, 0.3846571, -0.051262047), float4(0.26087677, 0.57784307, 0.18719967, 0.020236308), float4(0.52379215, -0.05564443, 0.30163896, 0.71370804), float4(0.21658209, 0.019191828, 0.6642433, -0.067210674), float4(0.3401835, 0.84825695, 0.24689835, 0.007948153), float4(0.8066414, -0.08580606, 0.3764272, 0.98085874), float4(0.27799374, -0.0131498, 0.9516064, -0.1115874), float4(0.41002518, 1.1108938, 0.3100251, -0.04768115), float4(1.087319, -0.14611875, 0.44455653, 1.2501811), float4(0.34455645, -0.0956435, 1.2085621, -0.1894001), float4(0.48001888, 1.403938, 0.3815878, -0.15293887), float4(1.3255475, -0.23986568, 0.5123142, 1.5619527), float4(0.41955334, -0.21955688, 1.4378978, -0.29706544), float4(0.5414322, 1.7246025, 0.4580031, -0.29523104), float4(1.5453081, -0.36114627, 0.5671063, 1.8921922), float4(0.4970839, -0.37969407, 1.6475452, -0.43204588), float4(0.5890693, 2.0649552, 0.53673345, -0.47268757), float4(1.7444439, -0.5097059, 0.6070627, 2.2430565), float4(0.57689345, -0.5739689, 1.8359008, -0.5940731), float4(0.62084395, 2.4265997, 0.6175107, 0.0));
+static const float4 vol_frame[43] = Constructarray43_float4_(float4(0.0, 0.0, 960.0, 540.0), float4(960.0, 540.0, 0.004680485, 0.00936097), float4(0.0, 1.1, 4.5, 0.0), float4(0.0, -1.0, 0.6470582, 0.0), float4(0.0, 0.0, 0.36397022, 0.0), float4(0.0033465358, 0.0051815165, 0.014443844, 1.0), float4(1.0, 0.0, 1.0, 3.0), float4(-0.60002863, -0.60002863, -0.60002863, 1.000029), float4(2.8000307, 0.8000288, 16.0, 1.0), float4(-0.42399916, 0.8479983, 0.31799936, 12.0), float4(12.0, 12.0, 1.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, -0.07849332), float4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), float4(0.10467947, -0.038403668, 0.107851274, -0.064069755), float4(0.1727788, 0.3046489, 0.13125731, -0.008553555), float4(0.24621235, -0.05407174, 0.21792875, 0.44128785), float4(0.15875934, 0.010998466, 0.3846571, -0.051262047), float4(0.26087677, 0.57784307, 0.18719967, 0.020236308), float4(0.52379215, -0.05564443, 0.30163896, 0.71370804), float4(0.21658209, 0.019191828, 0.6642433, -0.067210674), float4(0.3401835, 0.84825695, 0.24689835, 0.007948153), float4(0.8066414, -0.08580606, 0.3764272, 0.98085874), float4(0.27799374, -0.0131498, 0.9516064, -0.1115874), float4(0.41002518, 1.1108938, 0.3100251, -0.04768115), float4(1.087319, -0.14611875, 0.44455653, 1.2501811), float4(0.34455645, -0.0956435, 1.2085621, -0.1894001), float4(0.48001888, 1.403938, 0.3815878, -0.15293887), float4(1.3255475, -0.23986568, 0.5123142, 1.5619527), float4(0.41955334, -0.21955688, 1.4378978, -0.29706544), float4(0.5414322, 1.7246025, 0.4580031, -0.29523104), float4(1.5453081, -0.36114627, 0.5671063, 1.8921922), float4(0.4970839, -0.37969407, 1.6475452, -0.43204588), float4(0.5890693, 2.0649552, 0.53673345, -0.47268757), float4(1.7444439, -0.5097059, 0.6070627, 2.2430565), float4(0.57689345, -0.5739689, 1.8359008, -0.5940731), float4(0.62084395, 2.4265997, 0.6175107, 0.0));
 static const float4 vol_input[1] = Constructarray1_float4_(float4(0.0, 0.0, 0.0, 0.0));
 static const uint VOL_CURVES = 1u;
 static const float VOL_SMALLEST = 1.1754944e-38;
@@ -404,7 +404,7 @@ static const uint VOL_IN_AT_MEDIA = 27u;
 static const uint VOL_IN_AT_LIGHTS = 35u;
 static const uint VOL_IN_AT_CELLS = 75u;
 static const uint VOL_IN_ROW_WORDS = 0u;
-static const bool VOL_IN_CORRECTED = true;
+static const bool VOL_IN_CORRECTED = false;
 static const bool VOL_IN_SOFT_LIGHTS = false;
 static const bool VOL_IN_OCCLUDING_LIGHTS = false;
 static const bool VOL_IN_LIGHT_GRIDS = true;
@@ -3043,14 +3043,14 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias)
     return (_e5 ? 0.0 : 1.0);
 }
 
-Vol_in_Stencil ConstructVol_in_Stencil(uint4 arg0, float4 arg1) {
+Vol_in_Stencil ConstructVol_in_Stencil(int4 arg0, float4 arg1) {
     Vol_in_Stencil ret = (Vol_in_Stencil)0;
     ret.at = arg0;
     ret.weights = arg1;
     return ret;
 }
 
-Vol_in_Stencil vol_in_stencil(float place_1, float last_2, uint words, bool spline)
+Vol_in_Stencil vol_in_stencil(float place_1, float last_2, bool spline)
 {
     float index_22 = min(floor(place_1), (last_2 - 1.0));
     float t_39 = (place_1 - index_22);
@@ -3059,11 +3059,11 @@ Vol_in_Stencil vol_in_stencil(float place_1, float last_2, uint words, bool spli
     float4 through = float4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
     float4 weights_8 = (spline ? through : local_12);
     int4 around = asint(asuint((naga_f2i32(index_22)).xxxx) + asuint(int4(int(-1), int(0), int(1), int(2))));
-    const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil((uint4(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx)) * words), weights_8);
+    const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx), weights_8);
     return vol_in_stencil_1;
 }
 
-float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, uint channels)
+float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, int columns, uint channel, uint channels)
 {
     float4 sums = (0.0).xxxx;
     uint i_4 = 0u;
@@ -3076,12 +3076,12 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
         if (all(loop_bound_21 == uint2(0u, 0u))) { break; }
         loop_bound_21 -= uint2(loop_bound_21.y == 0u, 1u);
         if (!loop_init_21) {
-            uint _e54 = i_4;
-            i_4 = (_e54 + 1u);
+            uint _e82 = i_4;
+            i_4 = (_e82 + 1u);
         }
         loop_init_21 = false;
-        uint _e14 = i_4;
-        if ((_e14 < four)) {
+        uint _e16 = i_4;
+        if ((_e16 < four)) {
         } else {
             break;
         }
@@ -3093,41 +3093,48 @@ float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, V
                 if (all(loop_bound_22 == uint2(0u, 0u))) { break; }
                 loop_bound_22 -= uint2(loop_bound_22.y == 0u, 1u);
                 if (!loop_init_22) {
-                    uint _e51 = j_3;
-                    j_3 = (_e51 + 1u);
+                    uint _e79 = j_3;
+                    j_3 = (_e79 + 1u);
                 }
                 loop_init_22 = false;
-                uint _e18 = j_3;
-                if ((_e18 < four)) {
+                uint _e20 = j_3;
+                if ((_e20 < four)) {
                 } else {
                     break;
                 }
                 {
-                    uint _e21 = i_4;
-                    uint _e25 = j_3;
-                    uint4 row = ((((first + x_22.at[min(uint(_e21), 3u)]) + y_7.at[min(uint(_e25), 3u)])).xxxx + z_5.at);
-                    const float _e32 = vol_input_word(row.x);
-                    const float _e34 = vol_input_word(row.y);
-                    const float _e36 = vol_input_word(row.z);
-                    const float _e38 = vol_input_word(row.w);
-                    float4 depths = float4(_e32, _e34, _e36, _e38);
-                    float4 _e40 = sums;
-                    uint _e42 = i_4;
-                    uint _e45 = j_3;
-                    sums = (_e40 + ((x_22.weights[min(uint(_e42), 3u)] * y_7.weights[min(uint(_e45), 3u)]) * depths));
+                    uint _e24 = i_4;
+                    uint _e28 = j_3;
+                    uint column = (first + (3u * uint(asint(asuint(asint(asuint(x_22.at[min(uint(_e24), 3u)]) * asuint(columns))) + asuint(y_7.at[min(uint(_e28), 3u)])))));
+                    const float _e34 = vol_input_word(column);
+                    int begin = naga_f2i32(_e34);
+                    const float _e38 = vol_input_word((column + 1u));
+                    int more_1 = naga_f2i32(_e38);
+                    const float _e43 = vol_input_word((column + 2u));
+                    uint depths = ((first + (4u * naga_f2u32(_e43))) + channel);
+                    uint4 row = ((uint4(clamp(asint(asuint(z_5.at) - asuint((begin).xxxx)), (int(0)).xxxx, (more_1).xxxx)) * channels) + (depths).xxxx);
+                    const float _e60 = vol_input_word(row.x);
+                    const float _e62 = vol_input_word(row.y);
+                    const float _e64 = vol_input_word(row.z);
+                    const float _e66 = vol_input_word(row.w);
+                    float4 around_1 = float4(_e60, _e62, _e64, _e66);
+                    float4 _e68 = sums;
+                    uint _e70 = i_4;
+                    uint _e73 = j_3;
+                    sums = (_e68 + ((x_22.weights[min(uint(_e70), 3u)] * y_7.weights[min(uint(_e73), 3u)]) * around_1));
                 }
             }
         }
     }
-    float4 _e57 = sums;
-    float4 weighted = (z_5.weights * _e57);
+    float4 _e85 = sums;
+    float4 weighted = (z_5.weights * _e85);
     return max((((weighted.x + weighted.y) + weighted.z) + weighted.w), 0.0);
 }
 
 float3 vol_in_grid_depth(uint grid, float3 point_4)
 {
     float3 depth = (0.0).xxx;
-    uint channel = 0u;
+    uint channel_1 = 0u;
 
     const float3 _e4 = vol_in_word3_((grid + 1u));
     const float3 _e7 = vol_in_word3_((grid + 13u));
@@ -3154,40 +3161,39 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     }
     const float _e74 = vol_frame_word((grid + 25u));
     uint channels_1 = naga_f2u32(_e74);
-    uint column = (channels_1 * naga_f2u32(_e13.z));
-    const float _e81 = vol_frame_word((grid + 27u));
-    bool spline_1 = (_e81 != 0.0);
-    const Vol_in_Stencil _e89 = vol_in_stencil(place_11.x, last_7.x, (column * naga_f2u32(_e13.y)), spline_1);
-    const Vol_in_Stencil _e92 = vol_in_stencil(place_11.y, last_7.y, column, spline_1);
-    const Vol_in_Stencil _e97 = vol_in_stencil(min(place_11.z, last_7.z), last_7.z, channels_1, spline_1);
-    const float _e100 = vol_frame_word((grid + 26u));
-    uint first_5 = naga_f2u32(_e100);
-    const float3 _e104 = vol_in_word3_((grid + 22u));
+    const float _e78 = vol_frame_word((grid + 27u));
+    bool spline_1 = (_e78 != 0.0);
+    const Vol_in_Stencil _e83 = vol_in_stencil(place_11.x, last_7.x, spline_1);
+    const Vol_in_Stencil _e86 = vol_in_stencil(place_11.y, last_7.y, spline_1);
+    const Vol_in_Stencil _e91 = vol_in_stencil(min(place_11.z, last_7.z), last_7.z, spline_1);
+    const float _e94 = vol_frame_word((grid + 26u));
+    uint first_5 = naga_f2u32(_e94);
+    const float3 _e98 = vol_in_word3_((grid + 22u));
     uint2 loop_bound_23 = uint2(4294967295u, 4294967295u);
     bool loop_init_23 = true;
     while(true) {
         if (all(loop_bound_23 == uint2(0u, 0u))) { break; }
         loop_bound_23 -= uint2(loop_bound_23.y == 0u, 1u);
         if (!loop_init_23) {
-            uint _e118 = channel;
-            channel = (_e118 + 1u);
+            uint _e113 = channel_1;
+            channel_1 = (_e113 + 1u);
         }
         loop_init_23 = false;
-        uint _e110 = channel;
-        if ((_e110 < channels_1)) {
+        uint _e104 = channel_1;
+        if ((_e104 < channels_1)) {
         } else {
             break;
         }
         {
-            uint _e112 = channel;
-            uint _e114 = channel;
-            const float _e116 = vol_in_grid_channel((first_5 + _e114), _e89, _e92, _e97, channels_1);
-            depth[min(uint(_e112), 2u)] = _e116;
+            uint _e106 = channel_1;
+            uint _e110 = channel_1;
+            const float _e111 = vol_in_grid_channel(first_5, _e83, _e86, _e91, naga_f2i32(_e13.y), _e110, channels_1);
+            depth[min(uint(_e106), 2u)] = _e111;
         }
     }
-    float3 _e120 = depth;
-    float _e122 = depth.x;
-    return (_e104 * ((channels_1 == 1u) ? (_e122).xxx : _e120));
+    float3 _e115 = depth;
+    float _e117 = depth.x;
+    return (_e98 * ((channels_1 == 1u) ? (_e117).xxx : _e115));
 }
 
 float vol_in_first_node(float shift)

@@ -137,7 +137,7 @@ var<private> vol_permutation: array<vec4<u32>, 64> = array<vec4<u32>, 64>(
 fn vol_permutation_word(index: u32) -> u32 { return vol_permutation[index >> 2u][index & 3u]; }
 var<private> vol_frame: array<vec4<f32>, 43> = array<vec4<f32>, 43>(
   vec4<f32>(0.0f, 0.0f, 960.0f, 540.0f),
-  vec4<f32>(960.0f, 540.0f, 0.004639909f, 0.009279818f),
+  vec4<f32>(960.0f, 540.0f, 0.004680485f, 0.00936097f),
   vec4<f32>(0.0f, 1.1f, 4.5f, 0.0f),
   vec4<f32>(0.0f, (-1.0f), 0.6470582f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.36397022f, 0.0f),
@@ -1337,7 +1337,7 @@ const VOL_IN_AT_MEDIA: u32 = 27u;
 const VOL_IN_AT_LIGHTS: u32 = 35u;
 const VOL_IN_AT_CELLS: u32 = 75u;
 const VOL_IN_ROW_WORDS: u32 = 0u;
-const VOL_IN_CORRECTED: bool = true;
+const VOL_IN_CORRECTED: bool = false;
 const VOL_IN_SOFT_LIGHTS: bool = false;
 const VOL_IN_OCCLUDING_LIGHTS: bool = false;
 const VOL_IN_LIGHT_GRIDS: bool = true;
@@ -2340,31 +2340,43 @@ fn vol_in_grid_depth(grid: u32, point: vec3f) -> vec3f {
     }
     // Behind it nothing is added.
     let channels = u32(vol_frame_word(grid + 25u));
-    let column = channels * u32(counts.z);
     let spline = vol_frame_word(grid + 27u) != 0.0;
-    let x = vol_in_stencil(place.x, last.x, column * u32(counts.y), spline);
-    let y = vol_in_stencil(place.y, last.y, column, spline);
-    let z = vol_in_stencil(min(place.z, last.z), last.z, channels, spline);
+    let x = vol_in_stencil(place.x, last.x, spline);
+    let y = vol_in_stencil(place.y, last.y, spline);
+    let z = vol_in_stencil(min(place.z, last.z), last.z, spline);
     let first = u32(vol_frame_word(grid + 26u));
     let tint = vol_in_word3(grid + 22u);
     var depth = vec3f(0.0);
     for (var channel = 0u; channel < channels; channel++) {
-        depth[channel] = vol_in_grid_channel(first + channel, x, y, z, channels);
+        depth[channel] = vol_in_grid_channel(first, x, y, z, i32(counts.y), channel, channels);
     }
     return tint * select(depth, vec3f(depth.x), channels == 1u);
 }
 
 // One channel between the points around; what the cubic overshoots below 0 is cut off.
-fn vol_in_grid_channel(first: u32, x: Vol_in_Stencil, y: Vol_in_Stencil, z: Vol_in_Stencil, channels: u32) -> f32 {
+fn vol_in_grid_channel(
+    first: u32,
+    x: Vol_in_Stencil,
+    y: Vol_in_Stencil,
+    z: Vol_in_Stencil,
+    columns: i32,
+    channel: u32,
+    channels: u32,
+) -> f32 {
     // Always 4, which no driver knows: unrolled wherever it is asked for, this compiles for minutes.
     let four = min(channels + 3u, 4u);
     // Four sums side by side, which are one vector.
     var sums = vec4f(0.0);
     for (var i = 0u; i < four; i++) {
         for (var j = 0u; j < four; j++) {
-            let row = vec4u((first + x.at[i]) + y.at[j]) + z.at;
-            let depths = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
-            sums += (x.weights[i] * y.weights[j]) * depths;
+            // Before the points of a column and behind them its depths are the first and the last one.
+            let column = first + 3u * u32((x.at[i] * columns) + y.at[j]);
+            let begin = i32(vol_input_word(column));
+            let more = i32(vol_input_word(column + 1u));
+            let depths = (first + 4u * u32(vol_input_word(column + 2u))) + channel;
+            let row = vec4u(clamp(z.at - vec4i(begin), vec4i(0), vec4i(more))) * channels + depths;
+            let around = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
+            sums += (x.weights[i] * y.weights[j]) * around;
         }
     }
     let weighted = z.weights * sums;
@@ -2373,13 +2385,13 @@ fn vol_in_grid_channel(first: u32, x: Vol_in_Stencil, y: Vol_in_Stencil, z: Vol_
 
 // The four points around a place along one axis.
 struct Vol_in_Stencil {
-    // Words from the first point of the axis to each; where there is none the last one counts twice.
-    at: vec4u,
+    // Their numbers; where there is none the last one counts twice.
+    at: vec4i,
     weights: vec4f,
 }
 
-// `place` in 0..`last`, points `words` words apart.
-fn vol_in_stencil(place: f32, last: f32, words: u32, spline: bool) -> Vol_in_Stencil {
+// `place` in 0..`last`.
+fn vol_in_stencil(place: f32, last: f32, spline: bool) -> Vol_in_Stencil {
     let index = min(floor(place), last - 1.0);
     let t = place - index;
     let local = vec4f(
@@ -2397,7 +2409,7 @@ fn vol_in_stencil(place: f32, last: f32, words: u32, spline: bool) -> Vol_in_Ste
     );
     let weights = select(local, through, spline);
     let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
-    return Vol_in_Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);
+    return Vol_in_Stencil(clamp(around, vec4i(0), vec4i(i32(last))), weights);
 }
 
 // How much of a light with a size is seen past the solids: soft shadows.

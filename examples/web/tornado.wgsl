@@ -2195,31 +2195,43 @@ fn grid_depth(grid: u32, point: vec3f) -> vec3f {
     }
     // Behind it nothing is added.
     let channels = u32(vol_frame_word(grid + 25u));
-    let column = channels * u32(counts.z);
     let spline = vol_frame_word(grid + 27u) != 0.0;
-    let x = stencil(place.x, last.x, column * u32(counts.y), spline);
-    let y = stencil(place.y, last.y, column, spline);
-    let z = stencil(min(place.z, last.z), last.z, channels, spline);
+    let x = stencil(place.x, last.x, spline);
+    let y = stencil(place.y, last.y, spline);
+    let z = stencil(min(place.z, last.z), last.z, spline);
     let first = u32(vol_frame_word(grid + 26u));
     let tint = word3(grid + 22u);
     var depth = vec3f(0.0);
     for (var channel = 0u; channel < channels; channel++) {
-        depth[channel] = grid_channel(first + channel, x, y, z, channels);
+        depth[channel] = grid_channel(first, x, y, z, i32(counts.y), channel, channels);
     }
     return tint * select(depth, vec3f(depth.x), channels == 1u);
 }
 
 // One channel between the points around; what the cubic overshoots below 0 is cut off.
-fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil, channels: u32) -> f32 {
+fn grid_channel(
+    first: u32,
+    x: Stencil,
+    y: Stencil,
+    z: Stencil,
+    columns: i32,
+    channel: u32,
+    channels: u32,
+) -> f32 {
     // Always 4, which no driver knows: unrolled wherever it is asked for, this compiles for minutes.
     let four = min(channels + 3u, 4u);
     // Four sums side by side, which are one vector.
     var sums = vec4f(0.0);
     for (var i = 0u; i < four; i++) {
         for (var j = 0u; j < four; j++) {
-            let row = vec4u((first + x.at[i]) + y.at[j]) + z.at;
-            let depths = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
-            sums += (x.weights[i] * y.weights[j]) * depths;
+            // Before the points of a column and behind them its depths are the first and the last one.
+            let column = first + 3u * u32((x.at[i] * columns) + y.at[j]);
+            let begin = i32(vol_input_word(column));
+            let more = i32(vol_input_word(column + 1u));
+            let depths = (first + 4u * u32(vol_input_word(column + 2u))) + channel;
+            let row = vec4u(clamp(z.at - vec4i(begin), vec4i(0), vec4i(more))) * channels + depths;
+            let around = vec4f(vol_input_word(row.x), vol_input_word(row.y), vol_input_word(row.z), vol_input_word(row.w));
+            sums += (x.weights[i] * y.weights[j]) * around;
         }
     }
     let weighted = z.weights * sums;
@@ -2228,13 +2240,13 @@ fn grid_channel(first: u32, x: Stencil, y: Stencil, z: Stencil, channels: u32) -
 
 // The four points around a place along one axis.
 struct Stencil {
-    // Words from the first point of the axis to each; where there is none the last one counts twice.
-    at: vec4u,
+    // Their numbers; where there is none the last one counts twice.
+    at: vec4i,
     weights: vec4f,
 }
 
-// `place` in 0..`last`, points `words` words apart.
-fn stencil(place: f32, last: f32, words: u32, spline: bool) -> Stencil {
+// `place` in 0..`last`.
+fn stencil(place: f32, last: f32, spline: bool) -> Stencil {
     let index = min(floor(place), last - 1.0);
     let t = place - index;
     let local = vec4f(
@@ -2252,7 +2264,7 @@ fn stencil(place: f32, last: f32, words: u32, spline: bool) -> Stencil {
     );
     let weights = select(local, through, spline);
     let around = vec4i(i32(index)) + vec4i(-1, 0, 1, 2);
-    return Stencil(vec4u(clamp(around, vec4i(0), vec4i(i32(last)))) * words, weights);
+    return Stencil(clamp(around, vec4i(0), vec4i(i32(last))), weights);
 }
 
 // How much of a light with a size is seen past the solids: soft shadows.

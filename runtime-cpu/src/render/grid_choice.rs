@@ -87,7 +87,7 @@ pub struct GridChoice {
     /// For [`Frame::light_grids`]; none to march.
     pub grid: Option<Arc<LightGrid>>,
     /// Error of the grid, or of the finest one that was tried: rms over the pilot's rays of the difference
-    /// to marching with half the step, over the rms of their colour.
+    /// to marching with shorter steps, over the rms of their colour.
     pub error: Option<f32>,
 }
 

@@ -47,6 +47,10 @@ impl<R: Real> Chunk<R> {
         self.slot_of(place.which, place.node.unwrap_or(0))
     }
 
+    fn slots(&self, places: &[Place<R>]) -> Vec<usize> {
+        places.iter().map(|place| self.slot(place)).collect()
+    }
+
     /// The slot of a node or panel of an active ray.
     #[inline(always)]
     pub(super) fn slot_of(&self, which: usize, node: usize) -> usize {
@@ -66,7 +70,7 @@ impl<R: Real> Chunk<R> {
 
     /// Adds optical depths at places.
     pub(super) fn deepen(&mut self, places: &[Place<R>], depths: &Colors<R>) {
-        let slots: Vec<usize> = places.iter().map(|place| self.slot(place)).collect();
+        let slots = self.slots(places);
         for (row, depths) in self.depth.0.iter_mut().zip(&depths.0) {
             for (&slot, &depth) in slots.iter().zip(depths) {
                 row[slot] = row[slot] + depth;
@@ -76,7 +80,7 @@ impl<R: Real> Chunk<R> {
 
     /// Adds the light of sources at places, `means` as of [`Chunk::means`].
     pub(super) fn send(&mut self, places: &[Place<R>], sources: &Colors<R>, means: &Colors<R>) {
-        let slots: Vec<usize> = places.iter().map(|place| self.slot(place)).collect();
+        let slots = self.slots(places);
         for (row, (sources, means)) in self.sent.0.iter_mut().zip(sources.0.iter().zip(&means.0)) {
             for (&slot, &source) in slots.iter().zip(sources) {
                 row[slot] = row[slot] + source * means[slot];

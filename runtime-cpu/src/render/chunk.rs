@@ -266,3 +266,60 @@ impl<R: Real> Loop for Gather<'_, R> {
         self.sums.rows = [light, through, coarse_light, coarse_through];
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::{add, mul, splat};
+
+    const NODES: usize = 7;
+
+    /// What one ray gathers, node by node.
+    fn alone(start: Glow<f32>, first: i32, stop: f32, nodes: &[[Vec3<f32>; 2]]) -> Glow<f32> {
+        let mut glow = start;
+        for ((depth, sent), node) in nodes.iter().map(|[depth, sent]| (*depth, *sent)).zip(first..) {
+            if largest(glow.transmittance) < stop {
+                break;
+            }
+            let decay = depth.map(Real::decay);
+            glow.light = add(glow.light, mul(glow.transmittance, sent));
+            glow.transmittance = mul(glow.transmittance, decay);
+            if node % 2 == 0 {
+                let twice = mul(sent, add(splat(1.0), decay));
+                glow.coarse_light = add(glow.coarse_light, mul(glow.coarse_transmittance, twice));
+                glow.coarse_transmittance = mul(glow.coarse_transmittance, mul(decay, decay));
+            }
+        }
+        glow
+    }
+
+    #[test]
+    fn rays_gather_what_each_does_alone() {
+        let mut seed = 1_u32;
+        let mut number = |most: f32| {
+            seed = 1_664_525_u32.wrapping_mul(seed).wrapping_add(1_013_904_223);
+            most * (seed >> 8) as f32 / (1 << 24) as f32
+        };
+        for (rays, stop) in [(1, 1e-3), (15, 0.0), (16, 1e-3), (17, 0.1), (40, 1e-3)] {
+            let cursors: Vec<_> = (0..rays).map(|ray| Cursor { ray, node: 3 * ray as i32 }).collect();
+            let mut glows: Vec<Glow<f32>> = vec![Glow::clear(); rays];
+            glows[rays / 2].transmittance = [0.5, 1e-4, 0.25];
+            let mut chunk = Chunk::new(rays, NODES, stop);
+            let mut nodes = vec![[[splat(0.0); 2]; NODES]; rays];
+            for (ray, nodes) in nodes.iter_mut().enumerate() {
+                for (node, [depth, sent]) in nodes.iter_mut().enumerate() {
+                    (*depth, *sent) =
+                        ([number(3.0), number(1.0), number(5.0)], [number(1.0), number(2.0), 0.5]);
+                    let slot = chunk.slot_of(ray, node);
+                    chunk.depth.set(slot, *depth);
+                    chunk.sent.set(slot, *sent);
+                }
+            }
+            let want = cursors.iter().map(|at| alone(glows[at.ray], at.node, stop, &nodes[at.ray]));
+            let want: Vec<_> = want.collect();
+            chunk.transmit(&cursors, &glows);
+            chunk.gather(&cursors, &mut glows);
+            assert_eq!(format!("{glows:?}"), format!("{want:?}"), "{rays} rays");
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Optical depth between a light and a point, looked up in the light's grid.
 //!
 //! A grid holds depths, not the light that arrives: between its points a depth is nearly linear where
-//! `exp(-depth)` is not. [`fill`] tells how they are found. Between points depths are cubic along each axis, in one of two ways:
+//! `exp(-depth)` is not. [`fill()`] finds them. Between points depths are cubic along each axis, in one of two ways:
 //!
 //! * a local cubic: third order in the distance between points where the density is smooth, first order at walls;
 //! * a cubic spline ([`spline`]): fourth order, 4e-7 deep inside a homogeneous ball with 129 points where the other is 2e-4

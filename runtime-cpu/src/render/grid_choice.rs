@@ -4,6 +4,8 @@
 //! cost more than it saves or not fit the memory; then shadow rays go on marching. Costs are counted in
 //! evaluations, not timed: the choice must not depend on how busy the machine is, nor on the backend.
 //!
+//! One light is judged at a time, the others have coarse grids meanwhile: their errors are the same on both sides.
+//!
 //! Rays are compared, not single points: their error is what was asked for, and at points that of a grid is
 //! ten times as large as in rays, which are means over many nodes (so is that of marching).
 
@@ -114,7 +116,9 @@ pub(super) fn choose_among(
     filled: &mut FilledGrids,
 ) -> Vec<GridChoice> {
     let tapes = Tapes::of_frame(program, frame);
-    choose_by(&Pilot::new(frame, &tapes, job.size), program, job, max_error, filled).lights
+    let light_grids = coarse_grids(program, frame, &tapes, filled);
+    let lit = Frame { light_grids, ..frame.clone() };
+    choose_by(&Pilot::new(&lit, &tapes, job.size), job, max_error, filled).lights
 }
 
 /// What was chosen for all lights.
@@ -124,45 +128,71 @@ struct Choices {
     marches: bool,
 }
 
-/// [`choose_light_grids`] with a pilot of the frame.
-fn choose_by(
-    pilot: &Pilot<'_>,
-    program: &Program,
-    job: &Job,
-    max_error: f32,
-    filled: &mut FilledGrids,
-) -> Choices {
+/// [`choose_light_grids`] with a pilot of a frame whose lights have their coarse grids.
+fn choose_by(pilot: &Pilot<'_>, job: &Job, max_error: f32, filled: &mut FilledGrids) -> Choices {
     let frame = pilot.frame;
     let mut lights = vec![GridChoice::default(); frame.lights.len()];
-    let scene = plain_scene(frame, job);
-    let Some(bounds) = around(&scene.media).filter(|_| frame.lights.iter().any(|light| light.shadows)) else {
-        return Choices { lights, marches: false };
+    let fine_job = Job { shadow_step: TEST_STEP * job.shadow_step, ..*job };
+    let fine = Scene::<f32>::new(frame, &fine_job);
+    let marched = marched(pilot, &fine, &fine_job).filter(|_| frame.light_grids.iter().any(Option::is_some));
+    let Some((marched, bounds)) = marched.zip(around(&fine.media)) else {
+        return Choices { lights, marches: frame.lights.iter().any(|light| light.shadows) };
     };
-    let fine = plain_scene(frame, &Job { shadow_step: TEST_STEP * job.shadow_step, ..*job });
-    let tested = pilot.expose_scene(&fine, pilot.all(), LIMIT);
-    let known =
-        tested.and_then(|(wanted, stats)| Some((wanted, costs(frame, job, pilot, cost(&stats) as f64)?)));
-    let Some((wanted, costs)) = known else { return Choices { lights, marches: true } };
-    filled.begin(program, frame);
-    let asked = costs.iter().filter(|&&cost| cost > 0.0).count();
+    let asked = marched.iter().filter(|marched| marched.as_ref().is_some_and(|one| one.cost > 0.0)).count();
     // The errors of several lights add up like those of independent measurements.
     let share = max_error / (asked.max(1) as f32).sqrt();
     let mut trial = Trial {
         pilot,
-        wanted,
         target: PART * share,
         most: MOST_PART * share,
         words: MAX_WORDS / asked.max(1),
         bounds,
         fine,
-        scene,
+        scene: plain_scene(frame, job),
         filled,
     };
+    let mut marches = false;
     for (index, choice) in lights.iter_mut().enumerate() {
-        *choice = trial.choose(index, costs[index]);
+        match &marched[index] {
+            Some(marched) => *choice = trial.choose(index, marched),
+            None => marches |= frame.lights[index].shadows,
+        }
+        let dear = marched[index].as_ref().is_some_and(|marched| marched.cost > 0.0);
+        marches |= dear && choice.grid.is_none();
     }
-    let marches = lights.iter().zip(&costs).any(|(choice, &cost)| cost > 0.0 && choice.grid.is_none());
     Choices { lights, marches }
+}
+
+/// What marching to one light gives.
+struct Marched {
+    /// The pilot's rays.
+    picture: Picture,
+    /// Evaluations that it would take in the whole picture.
+    cost: f64,
+}
+
+/// The pilot's rays with marching to each light that has a grid, the others looked up in theirs; nothing if that takes too
+/// much. The shadow step of the scene and the job is [`TEST_STEP`] of the picture's.
+fn marched(pilot: &Pilot<'_>, fine: &Scene<f32>, job: &Job) -> Option<Vec<Option<Marched>>> {
+    let samples = if job.sampling.tolerance > 0.0 {
+        job.sampling.most.min(ADAPTIVE_SAMPLES)
+    } else {
+        job.sampling.most
+    };
+    let scale = f64::from(TEST_STEP) * pilot.scale * f64::from(samples);
+    let (_, stats) = pilot.expose_scene(fine, pilot.all(), LIMIT)?;
+    let without = cost(&stats);
+    let march = |index: usize| {
+        let mut scene = Scene::new(pilot.frame, job);
+        scene.grids[index] = None;
+        let (picture, stats) = pilot.expose_scene(&scene, pilot.all(), LIMIT)?;
+        Some(Marched { picture, cost: scale * (cost(&stats) - without) as f64 })
+    };
+    let of_light = |(index, grid): (usize, &Option<Arc<LightGrid>>)| match grid {
+        Some(_) => march(index).map(Some),
+        None => Some(None),
+    };
+    pilot.frame.light_grids.iter().enumerate().map(of_light).collect()
 }
 
 /// A frame without the grids that it holds.
@@ -178,42 +208,14 @@ fn around(media: &[Medium<f32>]) -> Option<Aabb> {
     boxes.reduce(|a, b| a.union(&b))
 }
 
-/// Evaluations that marching towards each light would take in the whole picture, given those of the rays with all shadows
-/// and [`TEST_STEP`]; nothing if they are too many. Of several lights from rays with the shadows of each alone.
-fn costs(frame: &Frame, job: &Job, pilot: &Pilot<'_>, tested: f64) -> Option<Vec<f64>> {
-    let spent = |light: Option<usize>| {
-        let mut scene = plain_scene(frame, job);
-        scene.lights.iter_mut().for_each(|other| other.shadows &= Some(other.index) == light);
-        pilot.expose_scene(&scene, pilot.all(), LIMIT).map(|(_, stats)| cost(&stats) as f64)
-    };
-    let samples = if job.sampling.tolerance > 0.0 {
-        job.sampling.most.min(ADAPTIVE_SAMPLES)
-    } else {
-        job.sampling.most
-    };
-    let scale = pilot.scale * f64::from(samples);
-    let without = spent(None)?;
-    let is_only = frame.lights.iter().filter(|light| light.shadows).count() == 1;
-    let cost = |(index, light): (usize, &LightFrame)| {
-        Some(match light.shadows {
-            true if is_only => f64::from(TEST_STEP) * (tested - without) * scale,
-            true => (spent(Some(index))? - without) * scale,
-            false => 0.0,
-        })
-    };
-    frame.lights.iter().enumerate().map(cost).collect()
-}
-
 /// What the trials of all lights have in common.
 struct Trial<'a> {
     pilot: &'a Pilot<'a>,
     scene: Scene<f32>,
-    /// The same with the step that grids are compared with.
+    /// The same with coarse grids, and with the step that grids are compared with.
     fine: Scene<f32>,
     /// Around all media.
     bounds: Aabb,
-    /// The pilot's rays with that step.
-    wanted: Picture,
     /// Error that a grid is meant to have.
     target: f32,
     /// Error that the finest one may have.
@@ -225,8 +227,8 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Tries finer and finer grids for a light; `cost` is that of marching.
-    fn choose(&mut self, light: usize, cost: f64) -> GridChoice {
+    /// Tries finer and finer grids for a light, given what marching gives.
+    fn choose(&mut self, light: usize, marched: &Marched) -> GridChoice {
         let mut choice = GridChoice::default();
         let mut finest = None;
         // Intervals and error of the grid before.
@@ -239,7 +241,7 @@ impl Trial<'_> {
             let (Some(layout), Some(nodes)) = (layout, nodes) else { break };
             // Finer columns keep no larger part of their points.
             let words = (layout.points() as f64 * per_point) as usize;
-            if spent + nodes as f64 * per_node > PAYS * cost || words > self.words {
+            if spent + nodes as f64 * per_node > PAYS * marched.cost || words > self.words {
                 break;
             }
             let fields = || Batch::new(self.pilot.tapes, self.pilot.frame);
@@ -247,7 +249,7 @@ impl Trial<'_> {
             spent += evaluations as f64;
             per_node = evaluations as f64 / nodes as f64;
             per_point = grid.words() as f64 / grid.points() as f64;
-            let (grid, error) = self.smoothed(light, grid);
+            let (grid, error) = self.smoothed(light, grid, marched);
             choice.error = Some(error);
             let words = grid.words();
             let target = if grid.spline { self.target } else { LOCAL * self.target };
@@ -280,23 +282,22 @@ impl Trial<'_> {
     }
 
     /// A grid, or the spline through it where that is needed and clearly better, and its error.
-    fn smoothed(&mut self, light: usize, grid: Arc<LightGrid>) -> (Arc<LightGrid>, f32) {
-        let error = self.error(light, &grid);
+    fn smoothed(&mut self, light: usize, grid: Arc<LightGrid>, marched: &Marched) -> (Arc<LightGrid>, f32) {
+        let error = self.error(light, &grid, marched);
         if error <= LOCAL * self.target || grid.counts.iter().all(|&count| count <= TELLING_INTERVALS) {
             return (grid, error);
         }
         let Some(spline) = light_grid::splined(&grid, self.words).map(Arc::new) else { return (grid, error) };
-        let smooth = self.error(light, &spline);
+        let smooth = self.error(light, &spline, marched);
         if smooth < BETTER * error { (spline, smooth) } else { (grid, error) }
     }
 
     /// What a grid of a light changes in the pilot's rays.
-    fn error(&mut self, light: usize, grid: &Arc<LightGrid>) -> f32 {
-        self.fine.grids.resize_with(light, || None);
-        self.fine.grids.push(Some(Grid::new(grid)));
+    fn error(&mut self, light: usize, grid: &Arc<LightGrid>, marched: &Marched) -> f32 {
+        let coarse = self.fine.grids[light].replace(Grid::new(grid));
         let got = self.pilot.expose_scene(&self.fine, self.pilot.all(), LIMIT);
-        self.fine.grids.clear();
-        got.map_or(f32::INFINITY, |(got, _)| self.pilot.difference(&got, &self.wanted))
+        self.fine.grids[light] = coarse;
+        got.map_or(f32::INFINITY, |(got, _)| self.pilot.difference(&got, &marched.picture))
     }
 }
 
@@ -348,7 +349,7 @@ pub fn choose_with(
         let beside = (1.0 - PART * PART).sqrt() * max_error;
         let search = Search::new(&pilot, beside);
         let job = search.choice(beside).job(size, sampling);
-        let choices = choose_by(&pilot, program, &job, max_error, filled);
+        let choices = choose_by(&pilot, &job, max_error, filled);
         grids = choices.lights;
         taken = grids.iter().filter_map(GridChoice::taken).fold(0.0, f32::hypot);
         steps = (!choices.marches).then(|| search.choice(rest(max_error, taken)));

@@ -1,5 +1,7 @@
 //! The next nodes or panels of some rays, one slot for each: what light goes through them, and what is added.
 //!
+//! Twin: `gather` in `compiler/src/wgsl/render/medium.wgsl`.
+//!
 //! Slots of one node or panel of all rays are neighbours, so that rays go through them side by side, [`LANES`] at a time.
 
 use super::comb::Cursor;

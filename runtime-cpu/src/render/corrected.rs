@@ -13,8 +13,8 @@
 use super::camera::Ray;
 use super::chunk::Chunk;
 use super::comb::{Combs, Cursor};
-use super::fields::{Colors, Fields};
-use super::medium::{EXTINCTION, Glow};
+use super::fields::Fields;
+use super::medium::{EXTINCTION, Glow, coefficients_of};
 use super::panel::{Panel, Panels};
 use super::scatter::{Filling, scatters};
 use super::scene::Integrator;
@@ -86,8 +86,7 @@ fn sent<R: Real>(masses: [R; 2], [from, to]: [Vec3<R>; 2], depth: Vec3<R>, decay
 
 /// A medium at the ends of its panels, and those of them whose light arrives. Ends of others stay dark.
 fn filling<R: Real>(medium: usize, panels: Panels<R, 10>, chunk: &Chunk<R>) -> (Filling<R>, Vec<Panel<R>>) {
-    let [_, a, b, c, _, _, _, g, h, i] = panels.values;
-    let [scatter, source] = [[a, b, c], [g, h, i]].map(Colors);
+    let [scatter, _, source] = coefficients_of(panels.values);
     let mut list = panels.list;
     list.retain(|panel| chunk.is_open(chunk.slot_of(panel.which, panel.number)));
     let mut lit = vec![false; panels.places.len()];

@@ -138,6 +138,13 @@ impl<R: Real> FromIterator<Vec3<R>> for Points<R> {
 #[derive(Clone, Debug)]
 pub(crate) struct Colors<R>(pub(crate) [Vec<R>; 3]);
 
+impl<R: Real> FromIterator<Vec3<R>> for Colors<R> {
+    fn from_iter<I: IntoIterator<Item = Vec3<R>>>(colors: I) -> Self {
+        let Points { x, y, z } = colors.into_iter().collect();
+        Self([x, y, z])
+    }
+}
+
 impl<R: Real> Colors<R> {
     /// As many that are all alike in all channels.
     pub(crate) fn splat(value: R, count: usize) -> Self {

@@ -134,7 +134,8 @@ fn choose_by(pilot: &Pilot<'_>, job: &Job, max_error: f32, filled: &mut FilledGr
     let mut lights = vec![GridChoice::default(); frame.lights.len()];
     let fine_job = Job { shadow_step: TEST_STEP * job.shadow_step, ..*job };
     let fine = Scene::<f32>::new(frame, &fine_job);
-    let marched = marched(pilot, &fine, &fine_job).filter(|_| frame.light_grids.iter().any(Option::is_some));
+    let is_any = frame.light_grids.iter().any(Option::is_some);
+    let marched = is_any.then(|| marched(pilot, &fine, &fine_job)).flatten();
     let Some((marched, bounds)) = marched.zip(around(&fine.media)) else {
         return Choices { lights, marches: frame.lights.iter().any(|light| light.shadows) };
     };

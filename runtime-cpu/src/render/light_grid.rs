@@ -26,7 +26,7 @@ pub(super) use packed::unpacked;
 use self::packed::Packed;
 use super::fields::{Colors, Points};
 use crate::isa::Loop;
-use crate::real::{Decays, Real, Vec3, dot, length, mul, scale, smallest, splat, sub, vector};
+use crate::real::{Real, Vec3, dot, length, mul, scale, splat, sub, vector};
 use std::sync::Arc;
 use vol_compiler::frame::{GridColumn, LightGrid};
 
@@ -66,20 +66,11 @@ impl<R: Real> Grid<R> {
         }
     }
 
-    /// Part of the light that arrives at points, per channel; nothing where depths are above `opaque`.
-    pub(super) fn transmittances(&self, points: &Points<R>, opaque: R) -> Colors<R> {
+    /// Depths at many points.
+    pub(super) fn depths(&self, points: &Points<R>) -> Colors<R> {
         let mut depths = Colors::splat(R::ZERO, points.len());
         R::vectorized(Depths { grid: self, points, depths: &mut depths });
-        let mut decays = Colors::splat(R::ZERO, points.len());
-        for (x, decays) in depths.0.iter().zip(&mut decays.0) {
-            R::vectorized(Decays { x, decays });
-        }
-        for index in 0..points.len() {
-            if smallest(depths.get(index)) > opaque {
-                decays.set(index, splat(R::ZERO));
-            }
-        }
-        decays
+        depths
     }
 
     /// Depth at a point.
@@ -209,19 +200,7 @@ pub(super) fn splined(grid: &LightGrid, most_words: usize) -> Option<LightGrid> 
     let values = spline::coefficients(unpacked(grid), grid.counts, channels);
     let mut packed = Packed::new();
     values.chunks(grid.counts[2] as usize * channels).for_each(|column| packed.push(0, column, channels));
-    let LightGrid { distant, origin, axes, lo, scale, counts, tint, colored, .. } = *grid;
-    let layout = LightGrid {
-        distant,
-        origin,
-        axes,
-        lo,
-        scale,
-        counts,
-        tint,
-        colored,
-        spline: true,
-        ..LightGrid::default()
-    };
+    let layout = LightGrid { spline: true, columns: Vec::new(), depths: Vec::new(), ..*grid };
     Some(packed.into_grid(layout))
 }
 

@@ -23,8 +23,7 @@ use crate::real::{Real, Vec3, largest, splat};
 use vol_compiler::frame::Quadrature;
 use vol_compiler::program::Lighting;
 
-/// Place of the extinction among the outputs of [`vol_compiler::program::Medium::interior`]: the scattering is before it,
-/// the emission behind.
+/// First place of the extinction among those outputs: see [`coefficients_of`].
 pub(super) const EXTINCTION: usize = 4;
 
 /// Where less than this of the light arrives, the ray ends: what lies behind is lost, at most this
@@ -149,16 +148,21 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Filling<F::Real> {
         let Inside { places, weights, points } = self.inside(medium, rays, combs, active);
         let interior = self.scene.media[medium].interior;
-        let [density, values @ ..]: [Vec<F::Real>; 10] = self.fields.sample(interior, &points);
+        let mut values: [Vec<F::Real>; 10] = self.fields.sample(interior, &points);
         self.stats.medium_samples += places.len() as u64;
-        let mut values = values;
         let mut masses = weights;
-        F::Real::vectorized(PerMass { density: &density, masses: &mut masses, values: &mut values });
-        let [a, b, c, d, e, f, g, h, i] = values;
-        let [scatter, extinction, source] = [[a, b, c], [d, e, f], [g, h, i]].map(Colors);
+        let [density, coefficients @ ..] = &mut values;
+        F::Real::vectorized(PerMass { density, masses: &mut masses, values: coefficients });
+        let [scatter, extinction, source] = coefficients_of(values);
         chunk.deepen(&places, &extinction);
         Filling { medium, places, points, scatter, lit: Vec::new(), source }
     }
+}
+
+/// Scattering, extinction and emission among the outputs of [`vol_compiler::program::Medium::interior`]; the density is before
+/// them.
+pub(super) fn coefficients_of<R>([_, a, b, c, d, e, f, g, h, i]: [Vec<R>; 10]) -> [Colors<R>; 3] {
+    [[a, b, c], [d, e, f], [g, h, i]].map(Colors)
 }
 
 /// Multiplies coefficients per unit of density by the matter of each node.

@@ -7,12 +7,13 @@ use super::camera::Ray;
 use super::comb::Cursor;
 use super::fields::{Colors, Fields, Points};
 use super::scene::{Integrator, Light};
-use super::shade::arriving;
-use super::shadow::ShadowRay;
+use super::shade::{Arriving, arriving};
+use super::shadow::{ShadowRay, let_through};
 use super::styled::{StyledRay, StyledRays, asked};
 use super::surface::shadow_bias;
 use crate::real::{Real, Vec3, add, dot, mul, scale, splat, sub};
-use std::array;
+use std::mem;
+use vol_compiler::ir::FunctionId;
 use vol_compiler::program::Lighting;
 
 /// Where a medium is sampled.
@@ -80,10 +81,12 @@ impl<F: Fields> Integrator<'_, F> {
             return;
         }
         let lit: Vec<usize> = (0..filling.lit.len()).filter(|&place| filling.lit[place]).collect();
-        let phases = self.phases(light, rays, active, filling, &lit);
+        let lamps: Vec<_> = lit.iter().map(|&place| arriving(light, filling.points.get(place))).collect();
+        let whiches: Vec<usize> = lit.iter().map(|&place| filling.places[place].which).collect();
+        let phases = self.phases(medium.phase, light.distant, rays, active, &whiches, &lamps);
         // Add what arrives and is turned towards the eye.
         let table = self.scene.styled(light);
-        for (place, phase) in lit.into_iter().zip(phases) {
+        for ((place, lamp), phase) in lit.into_iter().zip(lamps).zip(phases) {
             let arrives = match (medium.lighting, &table, styled) {
                 (Lighting::Unshadowed, ..) => splat(F::Real::ONE),
                 (_, Some(table), Some(styled)) => {
@@ -92,39 +95,39 @@ impl<F: Fields> Integrator<'_, F> {
                 }
                 _ => seen.get(place),
             };
-            let lamp = arriving(light, filling.points.get(place));
             let light = mul(scale(filling.scatter.get(place), phase), mul(lamp.irradiance, arrives));
             filling.source.add(place, light);
         }
     }
 
-    /// The phase function of a medium, from a lamp towards the eye, at some of its places.
+    /// A phase function from a lamp towards the eye, at places on active rays; of a distant lamp it is the same all along a
+    /// ray, and asked once.
     fn phases(
         &mut self,
-        light: &Light<F::Real>,
+        phase: FunctionId,
+        distant: bool,
         rays: &[Ray<F::Real>],
         active: &[Cursor],
-        filling: &Filling<F::Real>,
-        some: &[usize],
+        whiches: &[usize],
+        lamps: &[Arriving<F::Real>],
     ) -> Vec<F::Real> {
-        let which = |place: &usize| filling.places[*place].which;
-        let toward = |place: &usize| arriving(light, filling.points.get(*place)).direction;
-        let angle = |place: &usize| turn(toward(place), rays[active[which(place)].ray].direction);
-        // The light of a distant lamp turns by one angle all along a ray.
-        let mut asked: Vec<usize> = some.to_vec();
-        if light.distant {
+        let mut asked: Vec<usize> = (0..lamps.len()).collect();
+        if distant {
             let mut is_known = vec![false; active.len()];
-            asked.retain(|place| !std::mem::replace(&mut is_known[which(place)], true));
+            asked.retain(|&place| !mem::replace(&mut is_known[whiches[place]], true));
         }
-        let turns: Vec<_> = asked.iter().map(angle).collect();
+        let turns = asked
+            .iter()
+            .map(|&place| turn(lamps[place].direction, rays[active[whiches[place]].ray].direction));
+        let turns: Vec<_> = turns.collect();
         let [less, more]: [Vec<_>; 2] = [0, 1].map(|side| turns.iter().map(|turn| turn[side]).collect());
-        let [phases] = self.fields.apply(self.scene.media[filling.medium].phase, &[&less, &more]);
-        if !light.distant {
+        let [phases] = self.fields.apply(phase, &[&less, &more]);
+        if !distant {
             return phases;
         }
         let mut of_rays = vec![F::Real::ZERO; active.len()];
-        asked.iter().zip(phases).for_each(|(place, phase)| of_rays[which(place)] = phase);
-        some.iter().map(|place| of_rays[which(place)]).collect()
+        asked.iter().zip(phases).for_each(|(&place, phase)| of_rays[whiches[place]] = phase);
+        whiches.iter().map(|&which| of_rays[which]).collect()
     }
 
     /// Fraction of a lamp's light that arrives at each place of each medium that needs to know. Media
@@ -182,7 +185,7 @@ impl<F: Fields> Integrator<'_, F> {
         let table = scene.styled(light).zip(styled);
         if let Some(grid) = scene.grid(light).filter(|_| table.is_none() && scene.solids.is_empty()) {
             self.stats.shadow_rays += points.len() as u64;
-            return grid.transmittances(points, scene.opaque);
+            return let_through(&grid.depths(points), scene.opaque);
         }
         let shadow_ray = |(index, &(_, t)): (usize, &(usize, F::Real))| {
             let origin = points.get(index);
@@ -194,7 +197,7 @@ impl<F: Fields> Integrator<'_, F> {
             Some((table, styled)) => self.styled_visibility(light, &table, rays, styled, asked, &shadow_rays),
             None => self.visibility(&shadow_rays, light),
         };
-        Colors(array::from_fn(|channel| found.iter().map(|color| color[channel]).collect()))
+        found.into_iter().collect()
     }
 }
 

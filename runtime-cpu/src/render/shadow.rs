@@ -6,7 +6,7 @@
 
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};
-use super::fields::Fields;
+use super::fields::{Colors, Fields};
 use super::near::Walkers;
 use super::panel::Panels;
 use super::penumbra::Cone;
@@ -42,6 +42,20 @@ impl<R: Real> ShadowRay<R> {
         let start = R::from_f32(8.0) * self.stride - t;
         distance < -start.max(R::ZERO)
     }
+}
+
+/// Part of the light that optical depths let through; nothing where they are above `opaque`.
+pub(super) fn let_through<R: Real>(depths: &Colors<R>, opaque: R) -> Colors<R> {
+    let mut arriving = Colors::splat(R::ZERO, depths.len());
+    for (x, decays) in depths.0.iter().zip(&mut arriving.0) {
+        R::vectorized(Decays { x, decays });
+    }
+    for index in 0..depths.len() {
+        if smallest(depths.get(index)) > opaque {
+            arriving.set(index, splat(R::ZERO));
+        }
+    }
+    arriving
 }
 
 impl<F: Fields> Integrator<'_, F> {
@@ -85,12 +99,9 @@ impl<F: Fields> Integrator<'_, F> {
             let mut seen = vec![splat(F::Real::ZERO); batch.len()];
             // Only what solids do not hide goes through the media.
             let free: Vec<usize> = (0..batch.len()).filter(|&ray| parts[ray] > F::Real::ZERO).collect();
-            let depths = self.depth_towards(light, batch, &free);
-            let mut decays = vec![splat(F::Real::ZERO); depths.len()];
-            F::Real::vectorized(Decays { x: depths.as_flattened(), decays: decays.as_flattened_mut() });
-            for ((ray, depth), decay) in free.into_iter().zip(depths).zip(decays) {
-                let dark = smallest(depth) > self.scene.opaque;
-                seen[ray] = if dark { splat(F::Real::ZERO) } else { scale(decay, parts[ray]) };
+            let arriving = let_through(&self.depth_towards(light, batch, &free), self.scene.opaque);
+            for (index, ray) in free.into_iter().enumerate() {
+                seen[ray] = scale(arriving.get(index), parts[ray]);
             }
             all.extend(seen);
         }
@@ -104,13 +115,13 @@ impl<F: Fields> Integrator<'_, F> {
         light: &Light<F::Real>,
         rays: &[ShadowRay<F::Real>],
         some: &[usize],
-    ) -> Vec<Vec3<F::Real>> {
+    ) -> Colors<F::Real> {
         if let Some(grid) = self.scene.grid(light) {
-            return some.iter().map(|&ray| grid.depth(rays[ray].ray.origin)).collect();
+            return grid.depths(&some.iter().map(|&ray| rays[ray].ray.origin).collect());
         }
         let paths: Vec<_> = some.iter().map(|&ray| rays[ray].ray).collect();
         let ends: Vec<_> = some.iter().map(|&ray| rays[ray].length).collect();
-        self.optical_depth(&paths, &ends)
+        self.optical_depth(&paths, &ends).into_iter().collect()
     }
 
     /// Whether the ray enters a solid before it reaches the light.

@@ -45,7 +45,19 @@ impl Column {
 /// All that a grid depends on beside the media: equal words, equal grids. None if [`fill`] gives none.
 pub(crate) fn recipe(table: &LightGrid, step: f32, quadrature: Quadrature) -> Option<Vec<u32>> {
     let column = Column::new(table, step)?;
-    let LightGrid { distant, origin, axes, lo, scale, counts, .. } = table;
+    let LightGrid {
+        distant,
+        origin,
+        axes,
+        lo,
+        scale,
+        counts,
+        tint: _,
+        colored: _,
+        spline: _,
+        columns: _,
+        depths: _,
+    } = table;
     let numbers = [origin, &axes[0], &axes[1], &axes[2], lo, scale].into_iter().flatten();
     let mut words: Vec<u32> = numbers.map(|number| number.to_bits()).collect();
     words.extend(counts);

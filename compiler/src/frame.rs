@@ -172,7 +172,14 @@ pub struct MediumFrame {
     /// The inside is in these boxes: for a tube one per part of its axis, with little outside
     /// between them; for most shapes one, `bounds`. At most [`MOST_CELLS`].
     pub cells: Vec<Aabb>,
+    /// How many steps of a camera ray a sample of it may stand for with [`Quadrature::Midpoint`]: a power of 2, at most
+    /// [`MOST_SPACING`]. Where media of lower spacing may be, samples are as near as those need. The runtime chooses it; 1 before
+    /// that, and of a program's only medium.
+    pub spacing: u32,
 }
+
+/// Largest [`MediumFrame::spacing`].
+pub const MOST_SPACING: u32 = 64;
 
 /// A light in one frame.
 #[derive(Clone, Copy, Debug)]
@@ -530,6 +537,7 @@ fn medium_frame(index: usize, medium: &crate::program::Medium, solid: Solid) -> 
         lighting: medium.lighting,
         bounds: extent::rounded(solid.bounds),
         cells: solid.cells.into_iter().map(extent::rounded).collect(),
+        spacing: 1,
     }
 }
 

@@ -166,27 +166,20 @@ struct Vol_in_Runs {
 struct Vol_in_Comb {
     float step_;
     float offset;
+    int block;
     float end;
     int first;
     int last;
     Vol_in_Runs all_[1];
     ivec2 runs[1];
     float before[1];
+    int steps_before;
     float own[1];
 };
-struct Vol_in_Between {
-    float next;
-    vec2 walls;
-    uint count;
-};
-struct Vol_in_Gap {
-    vec2 start;
-    vec2 stop;
-};
-struct Vol_in_Crossing {
-    vec2 inside;
-    vec2 outside;
-    uint moved;
+struct Vol_in_Node {
+    int first;
+    int steps;
+    int number;
 };
 struct Vol_in_Glow {
     vec3 light;
@@ -197,20 +190,6 @@ struct Vol_in_Glow {
 struct Vol_in_StyledRays {
     float none;
 };
-struct Vol_in_PanelEnd {
-    Vol_in_Interior interior;
-    vec3 source;
-    float distance_;
-    bool is_node;
-};
-struct Vol_in_Panels {
-    Vol_in_PanelEnd starts[1];
-    Vol_in_PanelEnd stops[1];
-    vec2 masses[1];
-    vec3 depth;
-    bool some;
-    bool lit;
-};
 struct Vol_in_Chunk {
     vec3 sent;
     vec3 depth;
@@ -218,7 +197,7 @@ struct Vol_in_Chunk {
 const vec4 vol_uniforms[7] = vec4[7](vec4(0.0, 0.0033465358, 0.0051815165, 0.014443844), vec4(10.0, 30.0, 1.0, 1.1), vec4(4.5, 0.6981317, 0.0, 0.4), vec4(0.2, 2.2, 1.5609045, 0.69090724), vec4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), vec4(1.1264106, 5.0, 0.0, 0.0), vec4(-0.4, 0.8, 0.3, 12.0));
 const vec4 vol_curves[45] = vec4[45](vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, 0.055, 0.0, -0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, -0.5, 1.1295928), vec4(-1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 0.0, 1.0, 2.2591856), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.33686078, 0.9263671), vec4(0.16843039, -0.33686078, 0.9263671, -0.16843039), vec4(-4.5778493e-6, -4.598711e-6, -4.576359e-6, 0.20000459), vec4(1.1000047, 0.10000458, 0.0, 0.0), vec4(0.2, 1.1, 0.1, -2.9802323e-9), vec4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), vec4(0.0, -0.2, 0.0, -0.1), vec4(0.0, 1.0, 0.0, -0.029880034), vec4(0.0, 0.9995535, 0.9995535, 0.0), vec4(0.029880034, -0.055, 0.0, 0.11), vec4(0.05, 0.0, 0.3025, 0.0), vec4(20.0, 0.5, 0.5, 1.1295928), vec4(1.0, 0.2236068, 1.3528211, 0.12298374), vec4(0.0, 1.0, 0.0, 2.2591856), vec4(0.0, 2.2, 0.0, 0.0), vec4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), vec4(-0.16843039, 0.0, 1.0, 0.0), vec4(-4.5778493e-6, 1.0999953, -4.576359e-6, 0.20000459), vec4(2.2000048, 0.10000458, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0));
 const uvec4 vol_permutation[64] = uvec4[64](uvec4(151u, 160u, 137u, 91u), uvec4(90u, 15u, 131u, 13u), uvec4(201u, 95u, 96u, 53u), uvec4(194u, 233u, 7u, 225u), uvec4(140u, 36u, 103u, 30u), uvec4(69u, 142u, 8u, 99u), uvec4(37u, 240u, 21u, 10u), uvec4(23u, 190u, 6u, 148u), uvec4(247u, 120u, 234u, 75u), uvec4(0u, 26u, 197u, 62u), uvec4(94u, 252u, 219u, 203u), uvec4(117u, 35u, 11u, 32u), uvec4(57u, 177u, 33u, 88u), uvec4(237u, 149u, 56u, 87u), uvec4(174u, 20u, 125u, 136u), uvec4(171u, 168u, 68u, 175u), uvec4(74u, 165u, 71u, 134u), uvec4(139u, 48u, 27u, 166u), uvec4(77u, 146u, 158u, 231u), uvec4(83u, 111u, 229u, 122u), uvec4(60u, 211u, 133u, 230u), uvec4(220u, 105u, 92u, 41u), uvec4(55u, 46u, 245u, 40u), uvec4(244u, 102u, 143u, 54u), uvec4(65u, 25u, 63u, 161u), uvec4(1u, 216u, 80u, 73u), uvec4(209u, 76u, 132u, 187u), uvec4(208u, 89u, 18u, 169u), uvec4(200u, 196u, 135u, 130u), uvec4(116u, 188u, 159u, 86u), uvec4(164u, 100u, 109u, 198u), uvec4(173u, 186u, 3u, 64u), uvec4(52u, 217u, 226u, 250u), uvec4(124u, 123u, 5u, 202u), uvec4(38u, 147u, 118u, 126u), uvec4(255u, 82u, 85u, 212u), uvec4(207u, 206u, 59u, 227u), uvec4(47u, 16u, 58u, 17u), uvec4(182u, 189u, 28u, 42u), uvec4(223u, 183u, 170u, 213u), uvec4(119u, 248u, 152u, 2u), uvec4(44u, 154u, 163u, 70u), uvec4(221u, 153u, 101u, 155u), uvec4(167u, 43u, 172u, 9u), uvec4(129u, 22u, 39u, 253u), uvec4(19u, 98u, 108u, 110u), uvec4(79u, 113u, 224u, 232u), uvec4(178u, 185u, 112u, 104u), uvec4(218u, 246u, 97u, 228u), uvec4(251u, 34u, 242u, 193u), uvec4(238u, 210u, 144u, 12u), uvec4(191u, 179u, 162u, 241u), uvec4(81u, 51u, 145u, 235u), uvec4(249u, 14u, 239u, 107u), uvec4(49u, 192u, 214u, 31u), uvec4(181u, 199u, 106u, 157u), uvec4(184u, 84u, 204u, 176u), uvec4(115u, 121u, 50u, 45u), uvec4(127u, 4u, 150u, 254u), uvec4(138u, 236u, 205u, 93u), uvec4(222u, 114u, 67u, 29u), uvec4(24u, 72u, 243u, 141u), uvec4(128u, 195u, 78u, 66u), uvec4(215u, 61u, 156u, 180u));
-const vec4 vol_frame[43] = vec4[43](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004680485, 0.00936097), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 16.0, 1.0), vec4(-0.42399916, 0.8479983, 0.31799936, 12.0), vec4(12.0, 12.0, 1.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, -0.07849332), vec4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), vec4(0.10467947, -0.038403668, 0.107851274, -0.064069755), vec4(0.1727788, 0.3046489, 0.13125731, -0.008553555), vec4(0.24621235, -0.05407174, 0.21792875, 0.44128785), vec4(0.15875934, 0.010998466, 0.3846571, -0.051262047), vec4(0.26087677, 0.57784307, 0.18719967, 0.020236308), vec4(0.52379215, -0.05564443, 0.30163896, 0.71370804), vec4(0.21658209, 0.019191828, 0.6642433, -0.067210674), vec4(0.3401835, 0.84825695, 0.24689835, 0.007948153), vec4(0.8066414, -0.08580606, 0.3764272, 0.98085874), vec4(0.27799374, -0.0131498, 0.9516064, -0.1115874), vec4(0.41002518, 1.1108938, 0.3100251, -0.04768115), vec4(1.087319, -0.14611875, 0.44455653, 1.2501811), vec4(0.34455645, -0.0956435, 1.2085621, -0.1894001), vec4(0.48001888, 1.403938, 0.3815878, -0.15293887), vec4(1.3255475, -0.23986568, 0.5123142, 1.5619527), vec4(0.41955334, -0.21955688, 1.4378978, -0.29706544), vec4(0.5414322, 1.7246025, 0.4580031, -0.29523104), vec4(1.5453081, -0.36114627, 0.5671063, 1.8921922), vec4(0.4970839, -0.37969407, 1.6475452, -0.43204588), vec4(0.5890693, 2.0649552, 0.53673345, -0.47268757), vec4(1.7444439, -0.5097059, 0.6070627, 2.2430565), vec4(0.57689345, -0.5739689, 1.8359008, -0.5940731), vec4(0.62084395, 2.4265997, 0.6175107, 0.0));
+const vec4 vol_frame[43] = vec4[43](vec4(0.0, 0.0, 960.0, 540.0), vec4(960.0, 540.0, 0.004680485, 0.00936097), vec4(0.0, 1.1, 4.5, 0.0), vec4(0.0, -1.0, 0.6470582, 0.0), vec4(0.0, 0.0, 0.36397022, 0.0), vec4(0.0033465358, 0.0051815165, 0.014443844, 1.0), vec4(1.0, 0.0, 1.0, 3.0), vec4(-0.60002863, -0.60002863, -0.60002863, 1.000029), vec4(2.8000307, 0.8000288, 16.0, 1.0), vec4(1.0, -0.42399916, 0.8479983, 0.31799936), vec4(12.0, 12.0, 12.0, 1.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(0.0, 0.0, 0.0, 0.0), vec4(-0.07849332, -0.03100111, -0.08124195, 0.12536836), vec4(0.16850124, 0.10467947, -0.038403668, 0.107851274), vec4(-0.064069755, 0.1727788, 0.3046489, 0.13125731), vec4(-0.008553555, 0.24621235, -0.05407174, 0.21792875), vec4(0.44128785, 0.15875934, 0.010998466, 0.3846571), vec4(-0.051262047, 0.26087677, 0.57784307, 0.18719967), vec4(0.020236308, 0.52379215, -0.05564443, 0.30163896), vec4(0.71370804, 0.21658209, 0.019191828, 0.6642433), vec4(-0.067210674, 0.3401835, 0.84825695, 0.24689835), vec4(0.007948153, 0.8066414, -0.08580606, 0.3764272), vec4(0.98085874, 0.27799374, -0.0131498, 0.9516064), vec4(-0.1115874, 0.41002518, 1.1108938, 0.3100251), vec4(-0.04768115, 1.087319, -0.14611875, 0.44455653), vec4(1.2501811, 0.34455645, -0.0956435, 1.2085621), vec4(-0.1894001, 0.48001888, 1.403938, 0.3815878), vec4(-0.15293887, 1.3255475, -0.23986568, 0.5123142), vec4(1.5619527, 0.41955334, -0.21955688, 1.4378978), vec4(-0.29706544, 0.5414322, 1.7246025, 0.4580031), vec4(-0.29523104, 1.5453081, -0.36114627, 0.5671063), vec4(1.8921922, 0.4970839, -0.37969407, 1.6475452), vec4(-0.43204588, 0.5890693, 2.0649552, 0.53673345), vec4(-0.47268757, 1.7444439, -0.5097059, 0.6070627), vec4(2.2430565, 0.57689345, -0.5739689, 1.8359008), vec4(-0.5940731, 0.62084395, 2.4265997, 0.6175107));
 const vec4 vol_input[1] = vec4[1](vec4(0.0, 0.0, 0.0, 0.0));
 const uint VOL_CURVES = 1u;
 const float VOL_SMALLEST = 1.1754944e-38;
@@ -262,17 +241,18 @@ const uint VOL_IN_MEDIUM_SLOTS = 1u;
 const uint VOL_IN_LIGHT_SLOTS = 1u;
 const uint VOL_IN_TRANSFER_SIZE = 256u;
 const uint VOL_IN_OBJECT_WORDS = 8u;
-const uint VOL_IN_MEDIUM_WORDS = 8u;
+const uint VOL_IN_MEDIUM_WORDS = 9u;
 const uint VOL_IN_CELL_WORDS = 6u;
 const uint VOL_IN_CELLS_WORDS = 384u;
 const uint VOL_IN_LIGHT_WORDS = 12u;
 const uint VOL_IN_PIXEL_WORDS = 15u;
 const uint VOL_IN_AT_OBJECTS = 27u;
 const uint VOL_IN_AT_MEDIA = 27u;
-const uint VOL_IN_AT_LIGHTS = 35u;
-const uint VOL_IN_AT_CELLS = 75u;
+const uint VOL_IN_AT_LIGHTS = 36u;
+const uint VOL_IN_AT_CELLS = 76u;
 const uint VOL_IN_ROW_WORDS = 0u;
 const bool VOL_IN_CORRECTED = false;
+const bool VOL_IN_SPACED = false;
 const bool VOL_IN_SOFT_LIGHTS = false;
 const bool VOL_IN_OCCLUDING_LIGHTS = false;
 const bool VOL_IN_LIGHT_GRIDS = true;
@@ -314,23 +294,9 @@ const float VOL_IN_LACK = 0.05;
 const float VOL_IN_BLUR = 0.3;
 const int VOL_IN_NO_NODE = 8388608;
 const float VOL_IN_NO_RUN = 8388608.0;
-const uint VOL_IN_THE_NODE = 0u;
-const uint VOL_IN_NO_MORE = 3u;
-const uint VOL_IN_A_GAP = 1u;
-const float VOL_IN_LEAST_SHARE = 1e-6;
-const uint VOL_IN_A_WALL = 2u;
-const uint VOL_IN_CHORD_ROUNDS = 3u;
-const uint VOL_IN_WALL_ROUNDS = 5u;
-const uint VOL_IN_STOP_END = 1u;
-const uint VOL_IN_START_END = 0u;
 const float VOL_IN_WEIGHTS[5] = float[5](16.0, 8.0, 4.0, 2.0, 1.0);
 const uint VOL_IN_WEIGHT_COUNT = 5u;
 const float VOL_IN_WEIGHT_SUM = 31.0;
-const uint VOL_IN_PLACES_OF_ENDS = 4u;
-const uint VOL_IN_NODE_BEFORE = 0u;
-const uint VOL_IN_NODE_AFTER = 1u;
-const float VOL_IN_THIN = 0.125;
-const float VOL_IN_THICK = 0.5;
 const uvec2 VOL_IN_STRIDE = uvec2(3242174889u, 2447445414u);
 const uint VOL_IN_GOLDEN_STRIDE = 2654435769u;
 
@@ -402,9 +368,9 @@ float vol_log2_(float x_3) {
 vec3 vol_quarter_turn(float x_4) {
     float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
     float _e3 = vol_round(u_1);
-    float t_38 = (u_1 - _e3);
-    float _e7 = vol_round((t_38 * 4.0));
-    float r = (t_38 - (_e7 * 0.25));
+    float t_33 = (u_1 - _e3);
+    float _e7 = vol_round((t_33 * 4.0));
+    float r = (t_33 - (_e7 * 0.25));
     float s = (r * r);
     float a3_1 = (-76.69787 + (s * 41.472946));
     float a2_ = (81.6052 + (s * a3_1));
@@ -475,12 +441,12 @@ Vol_Cell vol_cell_of(vec3 p) {
     float _e12 = vol_hold(p.z, -4194303.0, VOL_FIELD);
     vec3 held = vec3(_e4, _e8, _e12);
     vec3 whole = floor(held);
-    vec3 place_8 = (held - whole);
-    float _e17 = vol_fade(place_8.x);
-    float _e19 = vol_fade(place_8.y);
-    float _e21 = vol_fade(place_8.z);
-    vec3 weights_6 = vec3(_e17, _e19, _e21);
-    return Vol_Cell(ivec3(whole), place_8, weights_6);
+    vec3 place_5 = (held - whole);
+    float _e17 = vol_fade(place_5.x);
+    float _e19 = vol_fade(place_5.y);
+    float _e21 = vol_fade(place_5.z);
+    vec3 weights_3 = vec3(_e17, _e19, _e21);
+    return Vol_Cell(ivec3(whole), place_5, weights_3);
 }
 
 float vol_fade_slope(float t_1) {
@@ -528,8 +494,8 @@ uint vol_table_cell(int x_10, int y_2, int z_1) {
 }
 
 uint vol_mixed(uint joined) {
-    uint first_4 = ((joined ^ (joined >> 16u)) * 2146121005u);
-    return ((first_4 ^ (first_4 >> 15u)) * 2221713035u);
+    uint first_2 = ((joined ^ (joined >> 16u)) * 2146121005u);
+    return ((first_2 ^ (first_2 >> 15u)) * 2221713035u);
 }
 
 uint vol_spread(int x_11, int y_3, int z_2, uint seed) {
@@ -736,9 +702,9 @@ vec4 vol_fbm_gradient(vec3 p_5, float octaves_2, float lacunarity_1, float gain_
             float _e32 = frequency_1;
             float steepness = (_e31 * _e32);
             float _e34 = amplitude_1;
-            vec4 weights_7 = vec4(_e34, steepness, steepness, steepness);
+            vec4 weights_4 = vec4(_e34, steepness, steepness, steepness);
             vec4 _e36 = sum_2;
-            sum_2 = (_e36 + (weights_7 * _e30));
+            sum_2 = (_e36 + (weights_4 * _e30));
             float _e39 = amplitude_1;
             float _e40 = vol_next_octave(_e39, gain_1);
             amplitude_1 = _e40;
@@ -792,10 +758,10 @@ vec3 vol_end_from_point(vec3 p_8, uint word_4) {
 vec3 vol_offset_at(vec3 p_9, uint word_5, vec3 b1_1, vec3 b2_1, float t_6) {
     vec3 _e5 = vol_from_point(p_9, word_5);
     vec3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
-    float back = (1.0 - t_6);
+    float back_2 = (1.0 - t_6);
     vec3 _e9 = vol_end_from_point(p_9, word_5);
-    vec3 before_8 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
-    return ((t_6 > 0.5) ? before_8 : _e6);
+    vec3 before_7 = (_e9 - (back_2 * ((2.0 * (b1_1 + b2_1)) - (back_2 * b2_1))));
+    return ((t_6 > 0.5) ? before_7 : _e6);
 }
 
 float vol_rough_cube_root(float x_14) {
@@ -803,15 +769,15 @@ float vol_rough_cube_root(float x_14) {
 }
 
 float vol_depressed_step(float u, float gap3_, float m, float k_5) {
-    float value_4 = (((((u + gap3_) * u) + m) * u) - k_5);
+    float value_3 = (((((u + gap3_) * u) + m) * u) - k_5);
     float slope_8 = ((((3.0 * u) + (2.0 * gap3_)) * u) + m);
-    return max((u - (value_4 / max(slope_8, VOL_TINY))), 0.0);
+    return max((u - (value_3 / max(slope_8, VOL_TINY))), 0.0);
 }
 
 float vol_polish_step(float t_7, float a3_, float a2x3_, float a1_, float a0_, float low_1) {
-    float value_5 = ((((((a3_ * t_7) + a2x3_) * t_7) + a1_) * t_7) + a0_);
+    float value_4 = ((((((a3_ * t_7) + a2x3_) * t_7) + a1_) * t_7) + a0_);
     float slope_9 = (((((3.0 * a3_) * t_7) + (2.0 * a2x3_)) * t_7) + a1_);
-    float _e25 = vol_hold((t_7 - (value_5 / max(slope_9, VOL_TINY))), low_1, 1.0);
+    float _e25 = vol_hold((t_7 - (value_4 / max(slope_9, VOL_TINY))), low_1, 1.0);
     return _e25;
 }
 
@@ -941,15 +907,15 @@ Vol_CurvePoint vol_describe(vec3 p_13, uint word_12, float t_11) {
     float _e55 = vol_dot(_e30, _e17);
     float y_12 = ((_e53 * turn) - _e55);
     float _e57 = vol_dot(_e30, tangent_1);
-    float ahead_2 = -(_e57);
+    float ahead_4 = -(_e57);
     bool _e59 = vol_at_first(word_12, t_11);
     float _e62 = vol_curve_word((word_12 + 37u));
     bool starts = (_e59 && (_e62 == 0.0));
     bool _e66 = vol_at_last(word_12, t_11);
     float _e72 = vol_curve_word((word_12 + 38u));
-    bool ends_3 = ((_e66 || (_e23 == 0.0)) && (_e72 == 0.0));
-    float behind_first = (starts ? -(ahead_2) : 0.0);
-    float beyond_last = (ends_3 ? ahead_2 : 0.0);
+    bool ends_2 = ((_e66 || (_e23 == 0.0)) && (_e72 == 0.0));
+    float behind_first = (starts ? -(ahead_4) : 0.0);
+    float beyond_last = (ends_2 ? ahead_4 : 0.0);
     vec3 _e81 = vol_cross(_e20, v_6);
     float _e82 = vol_dot(_e30, _e81);
     float bent_1 = (_e82 / vv);
@@ -983,11 +949,11 @@ Vol_CurveSlopes vol_slopes(vec3 p_14, uint word_13, float t_12) {
     float per_speed_1 = (_e33 / speed_1);
     vec3 tangent_2 = (is_straight_1 ? _e11 : (v_7 * per_speed_1));
     float _e37 = vol_dot(_e19, _e19);
-    float distance_11 = sqrt(_e37);
-    float per_distance = ((distance_11 > 0.0) ? (-1.0 / max(distance_11, VOL_TINY)) : 0.0);
+    float distance_10 = sqrt(_e37);
+    float per_distance = ((distance_10 > 0.0) ? (-1.0 / max(distance_10, VOL_TINY)) : 0.0);
     bool at_end = ((t_12 == 0.0) || (t_12 == 1.0));
     float _e52 = vol_dot(_e19, tangent_2);
-    bool held_1 = (at_end && (abs(_e52) > (VOL_LEAN * distance_11)));
+    bool held_1 = (at_end && (abs(_e52) > (VOL_LEAN * distance_10)));
     vec3 _e58 = vol_cross(_e14, v_7);
     float _e59 = vol_dot(_e19, _e58);
     float bent_2 = (_e59 / vv_1);
@@ -1009,14 +975,14 @@ float vol_box_dist_sq(vec3 p_15, uint word_14) {
 Vol_Search vol_search(vec3 p_16, Vol_Curve curve) {
     Vol_Search search = Vol_Search(3.4028235e38, 0.0, 0u, false);
     uint index_6 = 0u;
-    Vol_LastSearch last_5 = vol_last_search[curve.number];
-    if ((last_5.some && all(equal(last_5.point, p_16)))) {
-        return last_5.found;
+    Vol_LastSearch last_4 = vol_last_search[curve.number];
+    if ((last_4.some && all(equal(last_4.point, p_16)))) {
+        return last_4.found;
     }
-    vec3 way = (p_16 - last_5.point);
+    vec3 way = (p_16 - last_4.point);
     float _e15 = vol_dot(way, way);
-    float reach_1 = (last_5.reach + sqrt(_e15));
-    float bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
+    float reach_1 = (last_4.reach + sqrt(_e15));
+    float bound = (last_4.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
     bool loop_init_2 = true;
     while(true) {
         if (!loop_init_2) {
@@ -1410,10 +1376,10 @@ vec3 vol_in_decay_moment3_(vec3 x_20) {
 }
 
 float vol_in_power(float x_21, float y_6) {
-    bool some = (x_21 > 0.0);
-    float _e6 = vol_log2_((some ? x_21 : 1.0));
+    bool some_1 = (x_21 > 0.0);
+    float _e6 = vol_log2_((some_1 ? x_21 : 1.0));
     float _e8 = vol_exp2_((y_6 * _e6));
-    return (some ? _e8 : 0.0);
+    return (some_1 ? _e8 : 0.0);
 }
 
 bool vol_in_is_within(Vol_in_Mean mean, float tolerance) {
@@ -1576,11 +1542,11 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, vec3 lo_2, vec3 hi_2) {
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[_e31]) || (o > hi_2[_e34]));
             float near_6 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
-            float end_18 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
+            float end_10 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
             float _e50 = span_1.entry;
             span_1.entry = max(_e50, near_6);
             float _e54 = span_1.leave;
-            span_1.leave = min(_e54, end_18);
+            span_1.leave = min(_e54, end_10);
         }
     }
     Vol_in_Span _e59 = span_1;
@@ -1718,15 +1684,15 @@ Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout
             }
             uint _e34 = solid_6;
             Vol_in_Span span_2 = spans_1[_e34];
-            bool some_1 = (span_2.entry <= span_2.leave);
-            bool ahead_3 = (some_1 && (t_16 < span_2.entry));
+            bool some_2 = (span_2.entry <= span_2.leave);
+            bool ahead_5 = (some_2 && (t_16 < span_2.entry));
             float _e45 = near.gap;
             float _e47 = near.gap;
-            near.gap = (ahead_3 ? min(_e47, (span_2.entry - t_16)) : _e45);
+            near.gap = (ahead_5 ? min(_e47, (span_2.entry - t_16)) : _e45);
             float _e54 = near.entry;
             float _e56 = near.entry;
-            near.entry = (ahead_3 ? min(_e56, span_2.entry) : _e54);
-            if (((some_1 && (t_16 >= span_2.entry)) && (t_16 <= span_2.leave))) {
+            near.entry = (ahead_5 ? min(_e56, span_2.entry) : _e54);
+            if (((some_2 && (t_16 >= span_2.entry)) && (t_16 <= span_2.leave))) {
                 float _e68 = near.rest;
                 near.rest = max(_e68, (span_2.leave - t_16));
                 uint _e72 = solid_6;
@@ -1799,16 +1765,16 @@ float vol_in_advance(Vol_in_Near near_2, uint step_1, float least) {
 
 Vol_in_Walker vol_in_onward(Vol_in_Near near_3, Vol_in_Walker walker_2, uint step_2, float least_1) {
     float _e4 = vol_in_advance(near_3, step_2, least_1);
-    float last_6 = (walker_2.t - walker_2.before);
-    bool is_first = (last_6 <= 0.0);
-    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_6)), 0.0);
+    float last_5 = (walker_2.t - walker_2.before);
+    bool is_first = (last_5 <= 0.0);
+    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_5)), 0.0);
     float touching = ((VOL_IN_EAGERNESS * near_3.distance_) / (1.0 + fall));
     float guess = min(min(touching, (VOL_IN_ROOM * near_3.gap)), (VOL_IN_ROOM * (near_3.leave - walker_2.t)));
-    float place_9 = (walker_2.t + guess);
-    bool is_inside = ((place_9 < near_3.entry) && (place_9 <= near_3.leave));
+    float place_6 = (walker_2.t + guess);
+    bool is_inside = ((place_6 < near_3.entry) && (place_6 <= near_3.leave));
     bool _e45 = vol_in_is_stuck(step_2);
     bool guessed = ((((guess > _e4) && is_inside) && !(is_first)) && !(_e45));
-    return Vol_in_Walker((guessed ? place_9 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
+    return Vol_in_Walker((guessed ? place_6 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
 }
 
 float vol_in_stride(float t_18) {
@@ -1822,8 +1788,8 @@ float vol_in_probe(Vol_in_Bracket bracket) {
     bool is_proper = ((bracket.outside.y >= 0.0) && (bracket.inside.y < 0.0));
     float fall_1 = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
     float part_3 = (bracket.outside.y / fall_1);
-    float between_4 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
-    return (is_proper ? between_4 : bracket.inside.x);
+    float between = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
+    return (is_proper ? between : bracket.inside.x);
 }
 
 Vol_in_Bracket vol_in_narrow(Vol_in_Bracket bracket_1, vec2 found) {
@@ -1904,20 +1870,20 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, flo
             float _e17 = vol_in_probe(_e16);
             uint _e18 = round_1;
             uint _e22 = round_1;
-            float place_10 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
-            vec3 _e26 = vol_in_ray_at(ray_8, place_10);
+            float place_7 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            vec3 _e26 = vol_in_ray_at(ray_8, place_7);
             float _e27 = vol_in_object_distance(solid_9, _e26);
-            vec2 found_3 = vec2(place_10, (side_1 * _e27));
+            vec2 found_1 = vec2(place_7, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
-                bracket_2.outside = found_3;
+                bracket_2.outside = found_1;
             } else {
                 uint _e34 = round_1;
                 if ((_e34 == 1u)) {
-                    bracket_2.inside = found_3;
+                    bracket_2.inside = found_1;
                 } else {
                     Vol_in_Bracket _e38 = bracket_2;
-                    Vol_in_Bracket _e39 = vol_in_narrow(_e38, found_3);
+                    Vol_in_Bracket _e39 = vol_in_narrow(_e38, found_1);
                     bracket_2 = _e39;
                 }
             }
@@ -2010,21 +1976,21 @@ Vol_in_Arriving vol_in_arriving(uint light, vec3 point_3) {
     vec3 toward_2 = (_e11 - point_3);
     float _e13 = vol_in_dot3_(toward_2, toward_2);
     float squared = max(_e13, 1e-12);
-    float distance_12 = sqrt(squared);
+    float distance_11 = sqrt(squared);
     vec3 _e21 = vol_in_word3_((at_2 + 1u));
-    vec3 direction_5 = (distant ? _e21 : (toward_2 / vec3(distance_12)));
+    vec3 direction_5 = (distant ? _e21 : (toward_2 / vec3(distance_11)));
     vec3 _e25 = vol_in_word3_((at_2 + 4u));
     vec3 _e30 = vol_in_word3_((at_2 + 4u));
     vec3 irradiance = (distant ? _e30 : (_e25 / vec3(squared)));
     float _e34 = vol_frame_word((at_2 + 7u));
     bool shadows = (_e34 != 0.0);
     float _e39 = vol_frame_word((at_2 + 8u));
-    float slope_11 = (distant ? _e39 : min((_e39 / distance_12), VOL_IN_MAX_SPREAD_TANGENT));
+    float slope_11 = (distant ? _e39 : min((_e39 / distance_11), VOL_IN_MAX_SPREAD_TANGENT));
     float _e46 = vol_frame_word((at_2 + 10u));
     uint grid_4 = uint(_e46);
     float _e50 = vol_frame_word((at_2 + 11u));
     uint style = uint(_e50);
-    return Vol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_12), irradiance, shadows, slope_11, grid_4, style);
+    return Vol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_11), irradiance, shadows, slope_11, grid_4, style);
 }
 
 float vol_in_shadow_bias(float t_23) {
@@ -2108,12 +2074,12 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
         {
             uint _e13 = solid_12;
             Vol_in_Span span_3 = spans_4[_e13];
-            bool some_2 = (span_3.entry <= span_3.leave);
-            bool before_9 = (some_2 && (t_24 < span_3.entry));
+            bool some_3 = (span_3.entry <= span_3.leave);
+            bool before_8 = (some_3 && (t_24 < span_3.entry));
             float _e24 = near_4.gap;
             float _e26 = near_4.gap;
-            near_4.gap = (before_9 ? min(_e26, (span_3.entry - t_24)) : _e24);
-            if (((some_2 && (t_24 >= span_3.entry)) && (t_24 <= span_3.leave))) {
+            near_4.gap = (before_8 ? min(_e26, (span_3.entry - t_24)) : _e24);
+            if (((some_3 && (t_24 >= span_3.entry)) && (t_24 <= span_3.leave))) {
                 uint _e37 = solid_12;
                 vec3 _e38 = vol_in_ray_at(ray_12, t_24);
                 float _e39 = vol_in_object_distance(_e37, _e38);
@@ -2135,8 +2101,8 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
 }
 
 bool vol_in_enters(float distance_1, float t_25, float least_2) {
-    float start_2 = ((8.0 * least_2) - t_25);
-    return (distance_1 < -(max(start_2, 0.0)));
+    float start = ((8.0 * least_2) - t_25);
+    return (distance_1 < -(max(start, 0.0)));
 }
 
 float vol_in_least(vec2 a_6, vec2 b_6, vec2 c_3) {
@@ -2151,9 +2117,9 @@ float vol_in_least(vec2 a_6, vec2 b_6, vec2 c_3) {
     if ((bend <= 0.0)) {
         return b_6.y;
     }
-    float place_11 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
-    float value_6 = (a_6.y + ((place_11 - a_6.x) * (fall_2 + (bend * (place_11 - b_6.x)))));
-    return min(max(value_6, (0.75 * b_6.y)), b_6.y);
+    float place_8 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
+    float value_5 = (a_6.y + ((place_8 - a_6.x) * (fall_2 + (bend * (place_8 - b_6.x)))));
+    return min(max(value_5, (0.75 * b_6.y)), b_6.y);
 }
 
 float vol_in_cone_step(Vol_in_Around near_5, float least_step, float slope_2, float t_26) {
@@ -2179,7 +2145,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
     float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_4));
     lowest_1 = _e6;
     vol_in_cone_spans(ray_13, distance_2, slope_4, spans_5);
-    float end_19 = min(distance_2, VOL_IN_FAR);
+    float end_11 = min(distance_2, VOL_IN_FAR);
     bool loop_init_14 = true;
     while(true) {
         if (!loop_init_14) {
@@ -2203,7 +2169,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             }
             float _e30 = t_27;
             float _e38 = t_27;
-            bool counts = (((_e30 > 0.0) && (_e25.distance_ >= 0.0)) && (_e25.distance_ < (end_19 - _e38)));
+            bool counts = (((_e30 > 0.0) && (_e25.distance_ >= 0.0)) && (_e25.distance_ < (end_11 - _e38)));
             float _e42 = t_27;
             float divisor_2 = (counts ? _e42 : 1.0);
             float sine_1 = min((_e25.distance_ / divisor_2), 1.0);
@@ -2211,10 +2177,10 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             vec2 _e54 = older;
             vec2 _e55 = newer;
             float _e56 = vol_in_least(_e54, _e55, sample_1);
-            float found_4 = min(sample_1.y, _e56);
+            float found_2 = min(sample_1.y, _e56);
             float _e58 = lowest_1;
             float _e59 = lowest_1;
-            lowest_1 = (counts ? min(_e59, found_4) : _e58);
+            lowest_1 = (counts ? min(_e59, found_2) : _e58);
             vec2 _e64 = newer;
             older = (counts ? _e64 : vec2(0.0));
             newer = (counts ? sample_1 : vec2(0.0));
@@ -2223,7 +2189,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             float _e71 = vol_in_cone_step(_e25, least_step_1, slope_4, _e70);
             t_27 = (_e69 + _e71);
             float _e73 = t_27;
-            if ((_e73 >= end_19)) {
+            if ((_e73 >= end_11)) {
                 break;
             }
         }
@@ -2235,8 +2201,8 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
 
 float vol_in_clear_depth(float clear, vec2 end_1, vec2 place_1) {
     vec2 aside_1 = (place_1 - end_1);
-    float distance_13 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
-    return ((clear > 0.0) ? (clear - distance_13) : -2.0);
+    float distance_12 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
+    return ((clear > 0.0) ? (clear - distance_12) : -2.0);
 }
 
 float vol_in_lit_part(float centre, inout float clear_1[8]) {
@@ -2344,11 +2310,11 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
         }
         {
             uint _e14 = index_16;
-            uint end_20 = (max(_e14, 1u) - 1u);
+            uint end_12 = (max(_e14, 1u) - 1u);
             toward = ray_14;
             uint _e20 = index_16;
             if ((_e20 > 0u)) {
-                vec2 _e24 = ends_1[end_20];
+                vec2 _e24 = ends_1[end_12];
                 Vol_in_Ray _e25 = vol_in_rim(ray_14, slope_5, _e24);
                 toward = _e25;
             }
@@ -2356,7 +2322,7 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
             float _e27 = vol_in_walk(_e26, distance_3, least_step_2, slope_5);
             uint _e28 = index_16;
             if ((_e28 > 0u)) {
-                clear_2[end_20] = _e27;
+                clear_2[end_12] = _e27;
             } else {
                 if ((_e27 >= 1.0)) {
                     return 1.0;
@@ -2401,7 +2367,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3) {
     uint count_3 = 1u;
     vol_in_no_sides(sides_5);
     vol_in_object_spans(ray_15, sides_5, spans_6);
-    float end_21 = min(distance_4, VOL_IN_FAR);
+    float end_13 = min(distance_4, VOL_IN_FAR);
     bool loop_init_20 = true;
     while(true) {
         if (!loop_init_20) {
@@ -2435,7 +2401,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3) {
             walker_4 = _e35;
             bool _e36 = inside_1;
             float _e38 = walker_4.t;
-            if ((_e36 || (_e38 >= end_21))) {
+            if ((_e36 || (_e38 >= end_13))) {
                 break;
             }
         }
@@ -2451,13 +2417,13 @@ float vol_in_unblocked(Vol_in_Ray ray_16, float distance_5, float bias) {
 
 Vol_in_Stencil vol_in_stencil(float place_2, float last_2, bool spline) {
     float index_22 = min(floor(place_2), (last_2 - 1.0));
-    float t_39 = (place_2 - index_22);
-    vec4 local_12 = vec4(((((1.0 - (0.5 * t_39)) * t_39) - 0.5) * t_39), (((((1.5 * t_39) - 2.5) * t_39) * t_39) + 1.0), ((((2.0 - (1.5 * t_39)) * t_39) + 0.5) * t_39), ((((0.5 * t_39) - 0.5) * t_39) * t_39));
-    float back_1 = (1.0 - t_39);
-    vec4 through = vec4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
-    vec4 weights_8 = (spline ? through : local_12);
+    float t_34 = (place_2 - index_22);
+    vec4 local_14 = vec4(((((1.0 - (0.5 * t_34)) * t_34) - 0.5) * t_34), (((((1.5 * t_34) - 2.5) * t_34) * t_34) + 1.0), ((((2.0 - (1.5 * t_34)) * t_34) + 0.5) * t_34), ((((0.5 * t_34) - 0.5) * t_34) * t_34));
+    float back_3 = (1.0 - t_34);
+    vec4 through = vec4((0.16666667 * (back_3 * (back_3 * back_3))), (0.6666667 - ((t_34 * t_34) * (1.0 - (0.5 * t_34)))), (0.6666667 - ((back_3 * back_3) * (1.0 - (0.5 * back_3)))), (0.16666667 * (t_34 * (t_34 * t_34))));
+    vec4 weights_5 = (spline ? through : local_14);
     ivec4 around = (ivec4(int(index_22)) + ivec4(-1, 0, 1, 2));
-    return Vol_in_Stencil(min(max(around, ivec4(0)), ivec4(int(last_2))), weights_8);
+    return Vol_in_Stencil(min(max(around, ivec4(0)), ivec4(int(last_2))), weights_5);
 }
 
 float vol_in_grid_channel(uint first, Vol_in_Stencil x_22, Vol_in_Stencil y_7, Vol_in_Stencil z_5, int columns, uint channel, uint channels) {
@@ -2536,25 +2502,25 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     float _e25 = vol_in_dot3_(off, _e24);
     vec3 _e28 = vol_in_word3_((grid + 10u));
     float _e29 = vol_in_dot3_(off, _e28);
-    bool ahead_4 = (distant_1 || (_e29 > (0.5 * _e7.z)));
-    float divisor_3 = ((ahead_4 && !(distant_1)) ? _e29 : 1.0);
+    bool ahead_6 = (distant_1 || (_e29 > (0.5 * _e7.z)));
+    float divisor_3 = ((ahead_6 && !(distant_1)) ? _e29 : 1.0);
     float _e41 = vol_in_length3_(off);
     vec3 seen_4 = vec3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
-    vec3 last_7 = (_e13 - vec3(1.0));
-    vec3 place_12 = ((seen_4 - _e7) * _e10);
-    bool beside_1 = ((((place_12.x < 0.0) || (place_12.x > last_7.x)) || (place_12.y < 0.0)) || (place_12.y > last_7.y));
-    if (((!(ahead_4) || beside_1) || (place_12.z <= 0.0))) {
+    vec3 last_6 = (_e13 - vec3(1.0));
+    vec3 place_9 = ((seen_4 - _e7) * _e10);
+    bool beside_1 = ((((place_9.x < 0.0) || (place_9.x > last_6.x)) || (place_9.y < 0.0)) || (place_9.y > last_6.y));
+    if (((!(ahead_6) || beside_1) || (place_9.z <= 0.0))) {
         return vec3(0.0);
     }
     float _e74 = vol_frame_word((grid + 25u));
     uint channels_1 = uint(_e74);
     float _e78 = vol_frame_word((grid + 27u));
     bool spline_1 = (_e78 != 0.0);
-    Vol_in_Stencil _e83 = vol_in_stencil(place_12.x, last_7.x, spline_1);
-    Vol_in_Stencil _e86 = vol_in_stencil(place_12.y, last_7.y, spline_1);
-    Vol_in_Stencil _e91 = vol_in_stencil(min(place_12.z, last_7.z), last_7.z, spline_1);
+    Vol_in_Stencil _e83 = vol_in_stencil(place_9.x, last_6.x, spline_1);
+    Vol_in_Stencil _e86 = vol_in_stencil(place_9.y, last_6.y, spline_1);
+    Vol_in_Stencil _e91 = vol_in_stencil(min(place_9.z, last_6.z), last_6.z, spline_1);
     float _e94 = vol_frame_word((grid + 26u));
-    uint first_5 = uint(_e94);
+    uint first_3 = uint(_e94);
     vec3 _e98 = vol_in_word3_((grid + 22u));
     bool loop_init_23 = true;
     while(true) {
@@ -2571,7 +2537,7 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
         {
             uint _e106 = channel_1;
             uint _e110 = channel_1;
-            float _e111 = vol_in_grid_channel(first_5, _e83, _e86, _e91, int(_e13.y), _e110, channels_1);
+            float _e111 = vol_in_grid_channel(first_3, _e83, _e86, _e91, int(_e13.y), _e110, channels_1);
             depth[_e106] = _e111;
         }
     }
@@ -2580,25 +2546,44 @@ vec3 vol_in_grid_depth(uint grid, vec3 point_4) {
     return (_e98 * ((channels_1 == 1u) ? vec3(_e117) : _e115));
 }
 
-float vol_in_first_node(float shift) {
-    return (VOL_IN_CORRECTED ? ((shift > 0.0) ? (shift - 1.0) : shift) : (0.5 + shift));
+float vol_in_first_node(float shift, int block) {
+    float moved = floor((float(block) * (0.5 + shift)));
+    float middle = ((0.5 + shift) - (float((block - 1)) - moved));
+    return (VOL_IN_CORRECTED ? ((shift > 0.0) ? (shift - 1.0) : shift) : middle);
 }
 
 uint vol_in_medium_word(uint medium) {
     return (VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium));
 }
 
-ivec2 vol_in_node_range(Vol_in_Ray ray_17, vec3 lo_3, vec3 hi_3, inout Vol_in_Comb comb) {
-    float step_size_4 = comb.step_;
-    vec3 reach_2 = vec3((1.01 * step_size_4));
-    Vol_in_Span _e11 = vol_in_slab(ray_17, (lo_3 - reach_2), (hi_3 + reach_2));
-    float _e14 = comb.end;
-    float leave_1 = min(_e11.leave, _e14);
-    float _e19 = comb.offset;
-    float first_6 = min(max(floor(((_e11.entry / step_size_4) - _e19)), 0.0), VOL_IN_LAST_NODE);
-    float _e30 = comb.offset;
-    float last_8 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
-    return ((_e11.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_6), int(last_8)));
+int vol_in_spacing_of(inout Vol_in_Comb comb, uint medium_1) {
+    bool local_4 = false;
+    if (VOL_IN_SPACED) {
+        int _e6 = comb.block;
+        local_4 = (_e6 > 1);
+    } else {
+        local_4 = false;
+    }
+    bool _e10 = local_4;
+    if (_e10) {
+        uint _e11 = vol_in_medium_word(medium_1);
+        float _e14 = vol_frame_word((_e11 + 8u));
+        return int(_e14);
+    }
+    return 1;
+}
+
+ivec2 vol_in_node_range(Vol_in_Ray ray_17, vec3 lo_3, vec3 hi_3, int spacing, inout Vol_in_Comb comb_1) {
+    float step_size_2 = comb_1.step_;
+    vec3 reach_2 = vec3(((1.01 * float(spacing)) * step_size_2));
+    Vol_in_Span _e14 = vol_in_slab(ray_17, (lo_3 - reach_2), (hi_3 + reach_2));
+    float _e17 = comb_1.end;
+    float leave_1 = min(_e14.leave, _e17);
+    float _e22 = comb_1.offset;
+    float first_4 = min(max(floor(((_e14.entry / step_size_2) - _e22)), 0.0), VOL_IN_LAST_NODE);
+    float _e33 = comb_1.offset;
+    float last_7 = min(floor(((max(leave_1, 0.0) / step_size_2) - _e33)), VOL_IN_LAST_NODE);
+    return ((_e14.entry > leave_1) ? ivec2(0, -1) : ivec2(int(first_4), int(last_7)));
 }
 
 Vol_in_Runs vol_in_add_run(Vol_in_Runs before_3, ivec2 nodes) {
@@ -2606,599 +2591,429 @@ Vol_in_Runs vol_in_add_run(Vol_in_Runs before_3, ivec2 nodes) {
     bvec4 continued = bvec4(lessThanEqual(before_3.first, vec4((range.y + 2.0))).x && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).x, lessThanEqual(before_3.first, vec4((range.y + 2.0))).y && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).y, lessThanEqual(before_3.first, vec4((range.y + 2.0))).z && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).z, lessThanEqual(before_3.first, vec4((range.y + 2.0))).w && greaterThanEqual(before_3.last, vec4((range.x - 2.0))).w);
     vec4 own_first = mix(vec4(8388608.0), before_3.first, continued);
     vec4 own_last = mix(vec4(-1.0), before_3.last, continued);
-    float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    float last_9 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    float first_5 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
     vec4 kept_first = mix(before_3.first, vec4(8388608.0), continued);
     vec4 kept_last = mix(before_3.last, vec4(-1.0), continued);
     bvec4 free_2 = equal(kept_first, vec4(8388608.0));
-    bvec4 place_13 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
-    return Vol_in_Runs(mix(kept_first, min(kept_first, vec4(first_7)), place_13), mix(kept_last, max(kept_last, vec4(last_9)), place_13));
+    bvec4 place_10 = bvec4(free_2.x, (free_2.y && !(free_2.x)), (free_2.z && !((free_2.x || free_2.y))), !(((free_2.x || free_2.y) || free_2.z)));
+    return Vol_in_Runs(mix(kept_first, min(kept_first, vec4(first_5)), place_10), mix(kept_last, max(kept_last, vec4(last_8)), place_10));
 }
 
-Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1) {
+Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_2, inout Vol_in_Comb comb_2) {
     Vol_in_Runs runs = Vol_in_Runs(vec4(8388608.0), vec4(-1.0));
     uint cell = 0u;
     uint index_17 = 0u;
-    uint _e3 = vol_in_medium_word(medium_1);
-    vec3 _e12 = vol_in_word3_((_e3 + 1u));
-    vec3 _e15 = vol_in_word3_((_e3 + 4u));
-    ivec2 _e16 = vol_in_node_range(ray_18, _e12, _e15, comb_1);
-    float _e20 = vol_frame_word(_e3);
-    if (((_e16.x > _e16.y) || (_e20 == 0.0))) {
-        Vol_in_Runs _e24 = runs;
-        return _e24;
+    uint _e3 = vol_in_medium_word(medium_2);
+    int _e4 = vol_in_spacing_of(comb_2, medium_2);
+    vec3 _e13 = vol_in_word3_((_e3 + 1u));
+    vec3 _e16 = vol_in_word3_((_e3 + 4u));
+    ivec2 _e17 = vol_in_node_range(ray_18, _e13, _e16, _e4, comb_2);
+    float _e21 = vol_frame_word(_e3);
+    if (((_e17.x > _e17.y) || (_e21 == 0.0))) {
+        Vol_in_Runs _e25 = runs;
+        return _e25;
     }
-    float _e27 = vol_frame_word((_e3 + 7u));
-    uint count_5 = uint(_e27);
+    float _e28 = vol_frame_word((_e3 + 7u));
+    uint count_5 = uint(_e28);
     if ((count_5 == 0u)) {
-        Vol_in_Runs _e31 = runs;
-        Vol_in_Runs _e32 = vol_in_add_run(_e31, _e16);
-        return _e32;
+        Vol_in_Runs _e32 = runs;
+        Vol_in_Runs _e33 = vol_in_add_run(_e32, _e17);
+        return _e33;
     }
-    cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_1));
+    cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_2));
     bool loop_init_24 = true;
     while(true) {
         if (!loop_init_24) {
-            uint _e58 = index_17;
-            index_17 = (_e58 + 1u);
+            uint _e59 = index_17;
+            index_17 = (_e59 + 1u);
         }
         loop_init_24 = false;
-        uint _e40 = index_17;
-        if ((_e40 < count_5)) {
+        uint _e41 = index_17;
+        if ((_e41 < count_5)) {
         } else {
             break;
         }
         {
-            uint _e42 = cell;
-            vec3 _e43 = vol_in_word3_(_e42);
-            uint _e44 = cell;
-            vec3 _e47 = vol_in_word3_((_e44 + 3u));
-            ivec2 _e48 = vol_in_node_range(ray_18, _e43, _e47, comb_1);
-            if ((_e48.x <= _e48.y)) {
-                Vol_in_Runs _e52 = runs;
-                Vol_in_Runs _e53 = vol_in_add_run(_e52, _e48);
-                runs = _e53;
+            uint _e43 = cell;
+            vec3 _e44 = vol_in_word3_(_e43);
+            uint _e45 = cell;
+            vec3 _e48 = vol_in_word3_((_e45 + 3u));
+            ivec2 _e49 = vol_in_node_range(ray_18, _e44, _e48, _e4, comb_2);
+            if ((_e49.x <= _e49.y)) {
+                Vol_in_Runs _e53 = runs;
+                Vol_in_Runs _e54 = vol_in_add_run(_e53, _e49);
+                runs = _e54;
             }
-            uint _e54 = cell;
-            cell = (_e54 + VOL_IN_CELL_WORDS);
+            uint _e55 = cell;
+            cell = (_e55 + VOL_IN_CELL_WORDS);
         }
     }
-    Vol_in_Runs _e60 = runs;
-    return _e60;
+    Vol_in_Runs _e61 = runs;
+    return _e61;
 }
 
 ivec2 vol_in_run_from(Vol_in_Runs runs_1, int node) {
-    float earliest = float(node);
-    vec4 first_8 = mix(vec4(8388608.0), max(runs_1.first, vec4(earliest)), greaterThanEqual(runs_1.last, vec4(earliest)));
-    float least_4 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    vec4 last_10 = mix(vec4(earliest), runs_1.last, equal(first_8, vec4(least_4)));
-    int end_22 = int(max(max(last_10.x, last_10.y), max(last_10.z, last_10.w)));
-    return ivec2(int(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
+    float earliest_1 = float(node);
+    vec4 first_6 = mix(vec4(8388608.0), max(runs_1.first, vec4(earliest_1)), greaterThanEqual(runs_1.last, vec4(earliest_1)));
+    float least_4 = min(min(first_6.x, first_6.y), min(first_6.z, first_6.w));
+    vec4 last_9 = mix(vec4(earliest_1), runs_1.last, equal(first_6, vec4(least_4)));
+    int end_14 = int(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    return ivec2(int(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_14));
 }
 
-Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size) {
-    Vol_in_Comb comb_2 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    comb_2.step_ = step_size;
-    float _e7 = vol_in_first_node(ray_19.shift);
-    comb_2.offset = _e7;
-    comb_2.end = end_4;
-    comb_2.first = VOL_IN_NO_NODE;
-    comb_2.last = -1;
+Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size, int block_1) {
+    Vol_in_Comb comb_3 = Vol_in_Comb(0.0, 0.0, 0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), 0, float[1](0.0));
+    comb_3.step_ = step_size;
+    comb_3.block = block_1;
+    float _e9 = vol_in_first_node(ray_19.shift, block_1);
+    comb_3.offset = _e9;
+    comb_3.end = end_4;
+    comb_3.first = VOL_IN_NO_NODE;
+    comb_3.last = -1;
     {
-        Vol_in_Runs _e14 = vol_in_find_runs(ray_19, 0u, comb_2);
-        comb_2.all_[0u] = _e14;
-        ivec2 _e20 = vol_in_run_from(_e14, 0);
-        comb_2.runs[0u] = _e20;
-        int _e23 = comb_2.first;
-        int _e27 = comb_2.runs[0u].x;
-        comb_2.first = min(_e23, _e27);
-        int _e31 = comb_2.last;
-        comb_2.last = max(_e31, int(max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w))));
-        comb_2.before[0u] = VOL_IN_FAR;
-        comb_2.own[0u] = VOL_IN_FAR;
+        Vol_in_Runs _e16 = vol_in_find_runs(ray_19, 0u, comb_3);
+        comb_3.all_[0u] = _e16;
+        ivec2 _e22 = vol_in_run_from(_e16, 0);
+        comb_3.runs[0u] = _e22;
+        int _e25 = comb_3.first;
+        int _e29 = comb_3.runs[0u].x;
+        comb_3.first = min(_e25, _e29);
+        int _e33 = comb_3.last;
+        comb_3.last = max(_e33, int(max(max(_e16.last.x, _e16.last.y), max(_e16.last.z, _e16.last.w))));
+        comb_3.before[0u] = VOL_IN_FAR;
+        comb_3.own[0u] = VOL_IN_FAR;
     }
-    int _e53 = comb_2.last;
-    int _e55 = comb_2.first;
-    comb_2.last = min(_e53, (_e55 + 16383));
-    Vol_in_Comb _e59 = comb_2;
-    return _e59;
+    int _e55 = comb_3.last;
+    int _e57 = comb_3.first;
+    comb_3.last = min(_e55, (_e57 + 16383));
+    Vol_in_Comb _e61 = comb_3;
+    return _e61;
 }
 
-int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead) {
-    int first_1 = VOL_IN_NO_NODE;
-    int after = (node_1 + 1);
-    {
-        int _e11 = comb_3.runs[0u].y;
-        if ((_e11 < after)) {
-            Vol_in_Runs _e17 = comb_3.all_[0u];
-            ivec2 _e18 = vol_in_run_from(_e17, after);
-            comb_3.runs[0u] = _e18;
-        }
-        int _e19 = first_1;
-        int _e23 = comb_3.runs[0u].x;
-        first_1 = min(_e19, _e23);
-    }
-    int _e25 = first_1;
-    int next_2 = max(after, (_e25 - lead));
-    {
-        float _e33 = comb_3.before[0u];
-        comb_3.before[0u] = ((next_2 > after) ? VOL_IN_FAR : _e33);
-        float _e41 = comb_3.own[0u];
-        comb_3.own[0u] = ((next_2 > after) ? VOL_IN_FAR : _e41);
-    }
-    return next_2;
-}
-
-float vol_in_node_distance(int node_2, float step_size_1, float offset) {
-    return ((float(node_2) + offset) * step_size_1);
-}
-
-float vol_in_panel_node(inout Vol_in_Comb comb_4, int node_3) {
-    float _e3 = comb_4.step_;
-    float _e5 = comb_4.offset;
-    float _e6 = vol_in_node_distance(node_3, _e3, _e5);
-    float _e10 = comb_4.end;
-    return min(max(_e6, 0.0), _e10);
-}
-
-float vol_in_gap_probe(Vol_in_Gap gap, uint round_2) {
-    float length_1 = (gap.stop.x - gap.start.x);
-    float least_5 = (VOL_IN_LEAST_SHARE * length_1);
-    float touching_1 = ((gap.start.y + least_5) / ((gap.start.y + gap.stop.y) + (least_5 + least_5)));
-    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching_1 : 0.5)));
-}
-
-float vol_in_crossing_probe(Vol_in_Crossing crossing) {
-    vec2 inside_2 = crossing.inside;
-    vec2 outside_1 = crossing.outside;
-    return (inside_2.x + ((outside_1.x - inside_2.x) * (inside_2.y / (inside_2.y - outside_1.y))));
-}
-
-float vol_in_gap_room(Vol_in_Gap gap_1) {
-    return ((gap_1.stop.x - gap_1.start.x) - (gap_1.start.y + gap_1.stop.y));
-}
-
-Vol_in_Gap vol_in_gap_narrowed(Vol_in_Gap gap_2, vec2 found_1) {
-    Vol_in_Gap first_9 = Vol_in_Gap(gap_2.start, found_1);
-    Vol_in_Gap second = Vol_in_Gap(found_1, gap_2.stop);
-    float _e6 = vol_in_gap_room(second);
-    float _e7 = vol_in_gap_room(first_9);
-    if ((_e6 > _e7)) {
-        return second;
-    }
-    return first_9;
-}
-
-Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, vec2 found_2) {
-    if ((found_2.y < 0.0)) {
-        vec2 kept = vec2(crossing_1.outside.x, ((crossing_1.moved == 1u) ? (0.5 * crossing_1.outside.y) : crossing_1.outside.y));
-        return Vol_in_Crossing(found_2, kept, 1u);
-    }
-    vec2 kept_1 = vec2(crossing_1.inside.x, ((crossing_1.moved == 2u) ? (0.5 * crossing_1.inside.y) : crossing_1.inside.y));
-    return Vol_in_Crossing(kept_1, found_2, 2u);
-}
-
-Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, vec2 t_28) {
-    Vol_in_Between between = Vol_in_Between(4000000.0, vec2(0.0), 0u);
-    Vol_in_Gap gap_3 = Vol_in_Gap(vec2(0.0), vec2(0.0));
-    Vol_in_Crossing crossing_2 = Vol_in_Crossing(vec2(0.0), vec2(0.0), 0u);
-    Vol_in_Crossing other = Vol_in_Crossing(vec2(0.0), vec2(0.0), 0u);
-    uint wanted = 0u;
-    uint aim = VOL_IN_THE_NODE;
-    uint round_3 = 0u;
-    float probe = 0.0;
-    float value_3 = 0.0;
-    bool local_4 = false;
-    float own_5 = comb_5.own[medium_2];
-    ivec2 run_1 = comb_5.runs[medium_2];
-    bool known = (((node_4 + 1) >= run_1.x) && (node_4 <= run_1.y));
-    while(true) {
-        uint _e33 = aim;
-        if ((_e33 != VOL_IN_NO_MORE)) {
-        } else {
-            break;
-        }
+int vol_in_spacing_at(inout Vol_in_Comb comb_4, int step_3) {
+    int spacing_1 = 0;
+    int _e3 = comb_4.block;
+    spacing_1 = _e3;
+    if (VOL_IN_SPACED) {
+        int _e8 = spacing_1;
+        int first_7 = (max(step_3, 0) & -(_e8));
+        int _e11 = spacing_1;
+        float last_10 = float((first_7 + (_e11 - 1)));
         {
-            probe = t_28.y;
-            uint _e38 = aim;
-            if ((_e38 == VOL_IN_A_GAP)) {
-                Vol_in_Gap _e41 = gap_3;
-                uint _e42 = round_3;
-                float _e43 = vol_in_gap_probe(_e41, _e42);
-                probe = _e43;
-            } else {
-                uint _e44 = aim;
-                if ((_e44 == VOL_IN_A_WALL)) {
-                    Vol_in_Crossing _e47 = crossing_2;
-                    float _e48 = vol_in_crossing_probe(_e47);
-                    probe = _e48;
-                }
-            }
-            float _e49 = probe;
-            vec3 _e50 = vol_in_ray_at(ray_20, _e49);
-            value_3 = VOL_IN_FAR;
-            uint _e53 = aim;
-            if (!((_e53 != VOL_IN_THE_NODE))) {
-                local_4 = known;
-            } else {
-                local_4 = true;
-            }
-            bool _e60 = local_4;
-            if (_e60) {
-                float _e61 = vol_in_medium_region(medium_2, _e50);
-                value_3 = _e61;
-            }
-            float _e62 = probe;
-            float _e63 = value_3;
-            vec2 found_5 = vec2(_e62, _e63);
-            uint _e65 = round_3;
-            round_3 = (_e65 + 1u);
-            uint _e68 = aim;
-            if ((_e68 == VOL_IN_THE_NODE)) {
-                float _e72 = value_3;
-                between.next = _e72;
-                vec2 start_3 = vec2(t_28.x, own_5);
-                round_3 = 0u;
-                aim = VOL_IN_NO_MORE;
-                int _e78 = comb_5.first;
-                if (((node_4 >= _e78) && (t_28.x < t_28.y))) {
-                    float _e86 = value_3;
-                    if (((own_5 < 0.0) != (_e86 < 0.0))) {
-                        crossing_2 = Vol_in_Crossing(((own_5 < 0.0) ? start_3 : found_5), ((own_5 < 0.0) ? found_5 : start_3), 0u);
-                        wanted = 1u;
-                        aim = VOL_IN_A_WALL;
-                    } else {
-                        gap_3 = Vol_in_Gap(start_3, found_5);
-                        Vol_in_Gap _e103 = gap_3;
-                        float _e104 = vol_in_gap_room(_e103);
-                        bool may_enter = ((own_5 >= 0.0) && (_e104 > 0.0));
-                        aim = (may_enter ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
-                    }
-                }
-            } else {
-                uint _e111 = aim;
-                if ((_e111 == VOL_IN_A_GAP)) {
-                    float _e114 = value_3;
-                    if ((_e114 < 0.0)) {
-                        vec2 _e118 = gap_3.start;
-                        crossing_2 = Vol_in_Crossing(found_5, _e118, 0u);
-                        vec2 _e122 = gap_3.stop;
-                        other = Vol_in_Crossing(found_5, _e122, 0u);
-                        wanted = 2u;
-                        aim = VOL_IN_A_WALL;
-                        round_3 = 0u;
-                    } else {
-                        Vol_in_Gap _e128 = gap_3;
-                        Vol_in_Gap _e129 = vol_in_gap_narrowed(_e128, found_5);
-                        gap_3 = _e129;
-                        uint _e132 = round_3;
-                        Vol_in_Gap _e135 = gap_3;
-                        float _e136 = vol_in_gap_room(_e135);
-                        aim = (((_e132 < VOL_IN_CHORD_ROUNDS) && (_e136 > 0.0)) ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
-                    }
-                } else {
-                    Vol_in_Crossing _e141 = crossing_2;
-                    Vol_in_Crossing _e142 = vol_in_crossing_narrowed(_e141, found_5);
-                    crossing_2 = _e142;
-                    uint _e143 = round_3;
-                    if ((_e143 == VOL_IN_WALL_ROUNDS)) {
-                        Vol_in_Crossing _e146 = crossing_2;
-                        float _e147 = vol_in_crossing_probe(_e146);
-                        float _e151 = between.walls.x;
-                        uint _e155 = between.count;
-                        between.walls = ((_e155 == 0u) ? vec2(_e147) : vec2(_e151, _e147));
-                        uint _e160 = between.count;
-                        between.count = (_e160 + 1u);
-                        Vol_in_Crossing _e163 = other;
-                        crossing_2 = _e163;
-                        uint _e167 = between.count;
-                        uint _e168 = wanted;
-                        aim = ((_e167 < _e168) ? VOL_IN_A_WALL : VOL_IN_NO_MORE);
-                        round_3 = 0u;
-                    }
-                }
-            }
+            Vol_in_Runs runs_2 = comb_4.all_[0u];
+            bool there_2 = any(bvec4(lessThanEqual(runs_2.first, vec4(last_10)).x && greaterThanEqual(runs_2.last, vec4(float(first_7))).x, lessThanEqual(runs_2.first, vec4(last_10)).y && greaterThanEqual(runs_2.last, vec4(float(first_7))).y, lessThanEqual(runs_2.first, vec4(last_10)).z && greaterThanEqual(runs_2.last, vec4(float(first_7))).z, lessThanEqual(runs_2.first, vec4(last_10)).w && greaterThanEqual(runs_2.last, vec4(float(first_7))).w));
+            int _e29 = spacing_1;
+            int _e30 = spacing_1;
+            int _e31 = vol_in_spacing_of(comb_4, 0u);
+            spacing_1 = (there_2 ? min(_e30, _e31) : _e29);
         }
     }
-    float _e175 = between.next;
-    comb_5.own[medium_2] = _e175;
-    Vol_in_Between _e176 = between;
-    return _e176;
+    int _e34 = spacing_1;
+    return _e34;
 }
 
-vec2 vol_in_panel_stretch(float own, vec2 t_29, Vol_in_Between between_1) {
-    return mix(between_1.walls, t_29, bvec2((own < 0.0), (between_1.next < 0.0)));
+bool vol_in_is_block_begun(inout Vol_in_Comb comb_5, int step_4) {
+    int _e3 = comb_5.block;
+    return ((step_4 & (_e3 - 1)) == 0);
 }
 
-uvec2 vol_in_new_ends(float own_1, Vol_in_Between between_2) {
-    bool has_walls = (between_2.count > 0u);
-    uint first_10 = (((own_1 >= 0.0) && has_walls) ? VOL_IN_START_END : VOL_IN_STOP_END);
-    return uvec2(first_10, (((between_2.next < 0.0) || has_walls) ? 2u : VOL_IN_STOP_END));
+Vol_in_Node vol_in_node_before(inout Vol_in_Comb comb_6, Vol_in_Node node_1) {
+    int steps = 0;
+    bool local_5 = false;
+    steps = node_1.steps;
+    if (VOL_IN_SPACED) {
+        bool _e8 = vol_in_is_block_begun(comb_6, node_1.first);
+        local_5 = _e8;
+    } else {
+        local_5 = false;
+    }
+    bool _e10 = local_5;
+    if (_e10) {
+        int _e14 = vol_in_spacing_at(comb_6, (node_1.first - 1));
+        steps = _e14;
+    }
+    int _e16 = steps;
+    int _e18 = steps;
+    return Vol_in_Node((node_1.first - _e16), _e18, (node_1.number - 1));
 }
 
-bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, vec2 t_30, float own_2, Vol_in_Between between_3) {
-    bool some_3 = (((own_2 < 0.0) || (between_3.next < 0.0)) || (between_3.count > 0u));
-    int _e16 = comb_6.first;
-    return (((node_5 >= _e16) && (t_30.x < t_30.y)) && some_3);
+Vol_in_Node vol_in_node_at(inout Vol_in_Comb comb_7, Vol_in_Node known, int step_5) {
+    if (true) {
+        return Vol_in_Node(step_5, 1, step_5);
+    }
+    int block_2 = comb_7.block;
+    int own_end = ((known.first | (block_2 - 1)) + 1);
+    if ((step_5 < own_end)) {
+        int more_2 = ((step_5 - known.first) / known.steps);
+        return Vol_in_Node((known.first + (more_2 * known.steps)), known.steps, (known.number + more_2));
+    }
+    int begin_1 = (step_5 & -(block_2));
+    int _e29 = vol_in_spacing_at(comb_7, step_5);
+    int whole_2 = (((own_end - known.first) / known.steps) + ((begin_1 - own_end) / block_2));
+    int more_3 = ((step_5 - begin_1) / _e29);
+    return Vol_in_Node((begin_1 + (more_3 * _e29)), _e29, (known.number + (whole_2 + more_3)));
 }
 
-bvec2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, vec2 t_31, float own_3, float next) {
-    float _e9 = comb_7.step_;
-    float _e11 = comb_7.offset;
-    float _e12 = vol_in_node_distance((node_6 + 1), _e9, _e11);
-    bool is_last = (t_31.y < _e12);
-    return bvec2(((own_3 >= 0.0) || (node_6 == 0)), ((next >= 0.0) || is_last));
-}
-
-vec2 vol_in_panel_masses(float step_size_2, float length_, vec2 ends_2, bvec2 open) {
-    float half_1 = (0.5 * length_);
-    float above_1 = max(ends_2.x, ends_2.y);
-    float below_1 = min(ends_2.x, ends_2.y);
-    bool changes = ((above_1 > 0.0) && (below_1 < 0.0));
-    vec2 densities = max(ends_2, vec2(0.0));
-    float rise_3 = (open.x ? (densities.y - densities.x) : (densities.x - densities.y));
-    float part_5 = (step_size_2 / max(length_, (0.25 * step_size_2)));
-    float most_1 = (0.5 * (half_1 * (densities.x + densities.y)));
-    float missed = max(min(((0.083333336 * step_size_2) * (part_5 * rise_3)), most_1), -(most_1));
-    vec2 given = (open.x ? vec2(0.0, missed) : vec2(missed, 0.0));
-    vec2 plain = max(((half_1 * densities) + ((open.x == open.y) ? vec2(0.0) : given)), vec2(0.0));
-    float fall_3 = (changes ? (above_1 - below_1) : 1.0);
-    float mass = ((half_1 * (above_1 * (above_1 / fall_3))) + (length_ * (fall_3 * 0.083333336)));
-    vec2 cut = ((ends_2.x > 0.0) ? vec2(mass, 0.0) : vec2(0.0, mass));
-    return (changes ? cut : plain);
-}
-
-vec3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout vec4 before_4[1]) {
-    vec3 depth_1 = vec3(0.0);
-    vec4 first_2 = vec4(0.0);
-    vec4 last_3 = vec4(0.0);
-    uint end_5 = 0u;
-    float step_size_5 = comb_8.step_;
-    float _e6 = vol_in_panel_node(comb_8, node_7);
-    float _e9 = vol_in_panel_node(comb_8, (node_7 + 1));
-    vec2 t_40 = vec2(_e6, _e9);
-    {
-        float own_6 = comb_8.own[0u];
-        Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_40);
-        vec2 _e19 = vol_in_panel_stretch(own_6, t_40, _e18);
-        vec4 _e21 = before_4[0u];
-        first_2 = _e21;
-        uvec2 _e26 = vol_in_new_ends(own_6, _e18);
-        end_5 = _e26.x;
+Vol_in_Node vol_in_node_ahead(inout Vol_in_Comb comb_8, Vol_in_Node earliest, int step_6, int lead) {
+    Vol_in_Node node_2 = Vol_in_Node(0, 0, 0);
+    int back = 0;
+    if (true) {
+        int first_8 = max(earliest.first, (step_6 - lead));
+        return Vol_in_Node(first_8, 1, first_8);
+    }
+    node_2 = earliest;
+    if ((step_6 > earliest.first)) {
+        Vol_in_Node _e13 = vol_in_node_at(comb_8, earliest, step_6);
+        node_2 = _e13;
         bool loop_init_25 = true;
         while(true) {
             if (!loop_init_25) {
-                uint _e45 = end_5;
-                end_5 = (_e45 + 1u);
+                int _e25 = back;
+                back = (_e25 + 1);
             }
             loop_init_25 = false;
-            uint _e29 = end_5;
-            if ((_e29 < _e26.y)) {
+            int _e16 = back;
+            if ((_e16 < lead)) {
             } else {
                 break;
             }
             {
-                uint _e32 = end_5;
-                bool at_stop_1 = (_e32 == VOL_IN_STOP_END);
-                vec3 _e38 = vol_in_ray_at(ray_21, (at_stop_1 ? _e19.y : _e19.x));
-                vec4 _e39 = vol_in_medium_extinction(0u, _e38);
-                vec4 _e40 = first_2;
-                first_2 = (at_stop_1 ? _e40 : _e39);
-                vec4 _e42 = last_3;
-                last_3 = (at_stop_1 ? _e39 : _e42);
+                int _e19 = node_2.number;
+                if ((_e19 > earliest.number)) {
+                    Vol_in_Node _e22 = node_2;
+                    Vol_in_Node _e23 = vol_in_node_before(comb_8, _e22);
+                    node_2 = _e23;
+                }
             }
         }
-        vec4 _e50 = last_3;
-        before_4[0u] = ((_e18.next < 0.0) ? _e50 : vec4(0.0));
-        bool _e55 = vol_in_has_panel(comb_8, node_7, t_40, own_6, _e18);
-        if (_e55) {
-            bvec2 _e57 = vol_in_open_ends(comb_8, node_7, t_40, own_6, _e18.next);
-            float _e62 = first_2.x;
-            float _e64 = last_3.x;
-            vec2 _e66 = vol_in_panel_masses(step_size_5, (_e19.y - _e19.x), vec2(_e62, _e64), _e57);
-            vec3 _e67 = depth_1;
-            vec4 _e68 = first_2;
-            vec4 _e72 = last_3;
-            depth_1 = (_e67 + ((_e68.yzw * _e66.x) + (_e72.yzw * _e66.y)));
-        }
     }
-    vec3 _e78 = depth_1;
-    return _e78;
+    Vol_in_Node _e27 = node_2;
+    return _e27;
 }
 
-vec3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6) {
-    Vol_in_Comb comb_9 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    vec4 before_5[1] = vec4[1](vec4(0.0));
-    vec3 depth_2 = vec3(0.0);
-    int node_8 = 0;
-    float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    Vol_in_Comb _e4 = vol_in_new_comb(ray_22, end_6, _e3);
-    comb_9 = _e4;
-    int _e11 = comb_9.first;
-    node_8 = (_e11 - 1);
+Vol_in_Node vol_in_start_node(inout Vol_in_Comb comb_9, int lead_1) {
+    Vol_in_Node before_4 = Vol_in_Node(0, 0, 0);
+    int back_1 = 0;
+    int _e3 = vol_in_spacing_at(comb_9, 0);
+    Vol_in_Node origin_2 = Vol_in_Node(0, _e3, 0);
+    before_4 = origin_2;
     bool loop_init_26 = true;
     while(true) {
         if (!loop_init_26) {
-            int _e27 = node_8;
-            int _e29 = vol_in_next_node(comb_9, _e27, 1);
-            node_8 = _e29;
+            int _e15 = back_1;
+            back_1 = (_e15 + 1);
         }
         loop_init_26 = false;
-        int _e15 = node_8;
-        int _e17 = comb_9.last;
-        if ((_e15 <= _e17)) {
+        int _e10 = back_1;
+        if ((_e10 < lead_1)) {
         } else {
             break;
         }
         {
-            vec3 _e19 = depth_2;
-            int _e20 = node_8;
-            vec3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_5);
-            depth_2 = (_e19 + _e21);
-            vec3 _e23 = depth_2;
-            float _e24 = vol_in_smallest(_e23);
-            if ((_e24 > VOL_IN_OPAQUE)) {
-                break;
-            }
+            Vol_in_Node _e12 = before_4;
+            Vol_in_Node _e13 = vol_in_node_before(comb_9, _e12);
+            before_4 = _e13;
         }
     }
-    vec3 _e30 = depth_2;
-    return _e30;
+    Vol_in_Node _e17 = before_4;
+    int _e19 = comb_9.first;
+    Vol_in_Node _e20 = vol_in_node_ahead(comb_9, _e17, _e19, lead_1);
+    return _e20;
 }
 
-float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, ivec2 run, float t_32, int node_9, float end_7) {
+Vol_in_Node vol_in_node_after(inout Vol_in_Comb comb_10, Vol_in_Node node_3) {
+    Vol_in_Node after = Vol_in_Node(0, 0, 0);
+    bool local_6 = false;
+    after = Vol_in_Node((node_3.first + node_3.steps), node_3.steps, (node_3.number + 1));
+    if (VOL_IN_SPACED) {
+        int _e15 = after.first;
+        bool _e16 = vol_in_is_block_begun(comb_10, _e15);
+        local_6 = _e16;
+    } else {
+        local_6 = false;
+    }
+    bool _e18 = local_6;
+    if (_e18) {
+        int _e21 = after.first;
+        int _e22 = vol_in_spacing_at(comb_10, _e21);
+        after.steps = _e22;
+    }
+    Vol_in_Node _e23 = after;
+    return _e23;
+}
+
+Vol_in_Node vol_in_next_node(inout Vol_in_Comb comb_11, Vol_in_Node node_4, int lead_2) {
+    int first_1 = VOL_IN_NO_NODE;
+    Vol_in_Node _e3 = vol_in_node_after(comb_11, node_4);
+    {
+        int _e10 = comb_11.runs[0u].y;
+        if ((_e10 < _e3.first)) {
+            Vol_in_Runs _e17 = comb_11.all_[0u];
+            ivec2 _e19 = vol_in_run_from(_e17, _e3.first);
+            comb_11.runs[0u] = _e19;
+        }
+        int _e20 = first_1;
+        int _e24 = comb_11.runs[0u].x;
+        first_1 = min(_e20, _e24);
+    }
+    int _e26 = first_1;
+    Vol_in_Node _e27 = vol_in_node_ahead(comb_11, _e3, _e26, lead_2);
+    bool is_farther = (_e27.first > _e3.first);
+    comb_11.steps_before = node_4.steps;
+    {
+        float _e38 = comb_11.before[0u];
+        comb_11.before[0u] = (is_farther ? VOL_IN_FAR : _e38);
+        float _e45 = comb_11.own[0u];
+        comb_11.own[0u] = (is_farther ? VOL_IN_FAR : _e45);
+    }
+    return _e27;
+}
+
+float vol_in_wall(Vol_in_Ray ray_20, uint medium_3, ivec2 run, float t_28, Vol_in_Node node_5, int steps_before, float end_5) {
     float region = VOL_IN_FAR;
-    if (((node_9 >= (run.x - 1)) && (node_9 <= (run.y + 1)))) {
-        vec3 _e17 = vol_in_ray_at(ray_23, t_32);
-        float _e18 = vol_in_medium_region(medium_3, _e17);
-        region = _e18;
+    if ((((node_5.first + (2 * node_5.steps)) > run.x) && (node_5.first <= (run.y + max(node_5.steps, steps_before))))) {
+        vec3 _e23 = vol_in_ray_at(ray_20, t_28);
+        float _e24 = vol_in_medium_region(medium_3, _e23);
+        region = _e24;
     }
-    float _e19 = region;
-    return max(_e19, max((t_32 - end_7), -(t_32)));
+    float _e25 = region;
+    return max(_e25, max((t_28 - end_5), -(t_28)));
 }
 
-float vol_in_share(float own_4, float other_1, float step_size_3) {
-    float divisor_4 = ((own_4 < other_1) ? (own_4 - other_1) : -1.0);
-    float part_6 = (step_size_3 * (own_4 / divisor_4));
-    return ((other_1 < 0.0) ? (0.5 * step_size_3) : part_6);
+float vol_in_node_distance(int node_6, float step_size_1, float offset) {
+    return ((float(node_6) + offset) * step_size_1);
 }
 
-bool vol_in_weigh(Vol_in_Ray ray_24, inout Vol_in_Comb comb_10, int node_10, inout float weights[1]) {
-    bool any_inside = false;
-    float step_size_6 = comb_10.step_;
-    float _e11 = comb_10.offset;
-    float _e12 = vol_in_node_distance((node_10 + 1), step_size_6, _e11);
-    {
-        float before_10 = comb_10.before[0u];
-        float own_7 = comb_10.own[0u];
-        ivec2 _e22 = comb_10.runs[0u];
-        float _e26 = comb_10.end;
-        float _e27 = vol_in_wall(ray_24, 0u, _e22, _e12, (node_10 + 1), _e26);
-        float _e28 = vol_in_share(own_7, before_10, step_size_6);
-        float _e29 = vol_in_share(own_7, _e27, step_size_6);
-        float weight = (_e28 + _e29);
-        int _e34 = comb_10.first;
-        bool is_inside_1 = ((own_7 < 0.0) && (node_10 >= _e34));
-        weights[0u] = (is_inside_1 ? weight : 0.0);
-        bool _e40 = any_inside;
-        any_inside = (_e40 || is_inside_1);
-        comb_10.before[0u] = own_7;
-        comb_10.own[0u] = _e27;
-    }
-    bool _e46 = any_inside;
-    return _e46;
+float vol_in_middle_of(inout Vol_in_Comb comb_12, Vol_in_Node node_7) {
+    float _e4 = comb_12.step_;
+    float _e6 = comb_12.offset;
+    float _e14 = vol_in_node_distance(node_7.first, _e4, (_e6 + (0.5 * float((node_7.steps - 1)))));
+    return _e14;
 }
 
-vec3 vol_in_node_depth(vec3 point_5, inout float weights_1[1]) {
-    vec3 depth_3 = vec3(0.0);
-    {
-        float weight_1 = weights_1[0u];
-        if ((weight_1 > 0.0)) {
-            vec4 _e10 = vol_in_medium_extinction(0u, point_5);
-            vec3 _e11 = depth_3;
-            depth_3 = (_e11 + (_e10.yzw * (max(_e10.x, 0.0) * weight_1)));
-        }
-    }
-    vec3 _e19 = depth_3;
-    return _e19;
+float vol_in_share(vec2 own, vec2 other) {
+    float divisor_4 = ((own.x < other.x) ? (own.x - other.x) : -1.0);
+    float part_5 = ((own.y + other.y) * (own.x / divisor_4));
+    return ((other.x < 0.0) ? own.y : part_5);
 }
 
-vec3 vol_in_depth_by_nodes(Vol_in_Ray ray_25, float end_8) {
-    Vol_in_Comb comb_11 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    float weights_2[1] = float[1](0.0);
-    vec3 depth_4 = vec3(0.0);
-    int node_11 = 0;
+float vol_in_weigh(Vol_in_Ray ray_21, uint medium_4, inout Vol_in_Comb comb_13, Vol_in_Node node_8, Vol_in_Node next) {
+    int _e6 = comb_13.steps_before;
+    float _e12 = comb_13.step_;
+    vec3 halves = (0.5 * (vec3(ivec3(_e6, node_8.steps, next.steps)) * _e12));
+    float before_9 = comb_13.before[medium_4];
+    float own_1 = comb_13.own[medium_4];
+    ivec2 _e24 = comb_13.runs[medium_4];
+    float _e25 = vol_in_middle_of(comb_13, next);
+    float _e28 = comb_13.end;
+    float _e29 = vol_in_wall(ray_21, medium_4, _e24, _e25, next, node_8.steps, _e28);
+    vec2 here_1 = vec2(own_1, halves.y);
+    float _e34 = vol_in_share(here_1, vec2(before_9, halves.x));
+    float _e37 = vol_in_share(here_1, vec2(_e29, halves.z));
+    float weight = (_e34 + _e37);
+    comb_13.before[medium_4] = own_1;
+    comb_13.own[medium_4] = _e29;
+    int _e47 = comb_13.first;
+    return (((own_1 < 0.0) && (next.first > _e47)) ? weight : 0.0);
+}
+
+vec3 vol_in_optical_depth(Vol_in_Ray ray_22, float end_6) {
+    Vol_in_Comb comb_14 = Vol_in_Comb(0.0, 0.0, 0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), 0, float[1](0.0));
+    vec4 ahead_2[1] = vec4[1](vec4(0.0));
+    vec3 depth_1 = vec3(0.0);
+    Vol_in_Node node_9 = Vol_in_Node(0, 0, 0);
+    vec3 node_depth = vec3(0.0);
     float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    Vol_in_Comb _e4 = vol_in_new_comb(ray_25, end_8, _e3);
-    comb_11 = _e4;
-    int _e11 = comb_11.first;
-    node_11 = (_e11 - 2);
+    Vol_in_Comb _e5 = vol_in_new_comb(ray_22, end_6, _e3, 1);
+    comb_14 = _e5;
+    Vol_in_Node _e12 = vol_in_start_node(comb_14, 2);
+    node_9 = _e12;
     bool loop_init_27 = true;
     while(true) {
         if (!loop_init_27) {
-            int _e35 = node_11;
-            int _e37 = vol_in_next_node(comb_11, _e35, 2);
-            node_11 = _e37;
+            Vol_in_Node _e53 = node_9;
+            Vol_in_Node _e55 = vol_in_next_node(comb_14, _e53, 2);
+            node_9 = _e55;
         }
         loop_init_27 = false;
-        int _e15 = node_11;
-        int _e17 = comb_11.last;
+        int _e15 = node_9.first;
+        int _e17 = comb_14.last;
         if ((_e15 <= _e17)) {
         } else {
             break;
         }
         {
-            int _e19 = node_11;
-            bool _e20 = vol_in_weigh(ray_25, comb_11, _e19, weights_2);
-            if (_e20) {
-                vec3 _e21 = depth_4;
-                int _e22 = node_11;
-                float _e24 = comb_11.step_;
-                float _e26 = comb_11.offset;
-                float _e27 = vol_in_node_distance(_e22, _e24, _e26);
-                vec3 _e28 = vol_in_ray_at(ray_25, _e27);
-                vec3 _e29 = vol_in_node_depth(_e28, weights_2);
-                depth_4 = (_e21 + _e29);
+            Vol_in_Node _e19 = node_9;
+            Vol_in_Node _e20 = vol_in_node_after(comb_14, _e19);
+            node_depth = vec3(0.0);
+            {
+                Vol_in_Node _e25 = node_9;
+                float _e26 = vol_in_weigh(ray_22, 0u, comb_14, _e25, _e20);
+                vec4 matter = ahead_2[0u];
+                float _e31 = comb_14.own[0u];
+                if ((_e31 < 0.0)) {
+                    float _e35 = vol_in_middle_of(comb_14, _e20);
+                    vec3 _e36 = vol_in_ray_at(ray_22, _e35);
+                    vec4 _e37 = vol_in_medium_extinction(0u, _e36);
+                    ahead_2[0u] = _e37;
+                }
+                vec3 _e38 = node_depth;
+                node_depth = (_e38 + (matter.yzw * (max(matter.x, 0.0) * _e26)));
             }
-            vec3 _e31 = depth_4;
-            float _e32 = vol_in_smallest(_e31);
-            if ((_e32 > VOL_IN_OPAQUE)) {
+            vec3 _e46 = depth_1;
+            vec3 _e47 = node_depth;
+            depth_1 = (_e46 + _e47);
+            vec3 _e49 = depth_1;
+            float _e50 = vol_in_smallest(_e49);
+            if ((_e50 > VOL_IN_OPAQUE)) {
                 break;
             }
         }
     }
-    vec3 _e38 = depth_4;
-    return _e38;
+    vec3 _e56 = depth_1;
+    return _e56;
 }
 
-vec3 vol_in_optical_depth(Vol_in_Ray ray_26, float end_9) {
-    if (VOL_IN_CORRECTED) {
-        vec3 _e3 = vol_in_depth_by_panels(ray_26, end_9);
-        return _e3;
-    }
-    vec3 _e4 = vol_in_depth_by_nodes(ray_26, end_9);
-    return _e4;
-}
-
-vec3 vol_in_depth_towards(Vol_in_Ray ray_27, float distance_6, uint grid_1) {
+vec3 vol_in_depth_towards(Vol_in_Ray ray_23, float distance_6, uint grid_1) {
     if (VOL_IN_LIGHT_GRIDS) {
         if ((grid_1 != 0u)) {
-            vec3 _e7 = vol_in_grid_depth(grid_1, ray_27.origin);
+            vec3 _e7 = vol_in_grid_depth(grid_1, ray_23.origin);
             return _e7;
         }
     }
-    vec3 _e8 = vol_in_optical_depth(ray_27, distance_6);
+    vec3 _e8 = vol_in_optical_depth(ray_23, distance_6);
     return _e8;
 }
 
-vec3 vol_in_through_media(Vol_in_Ray ray_28, float distance_7, float part, uint grid_2) {
+vec3 vol_in_through_media(Vol_in_Ray ray_24, float distance_7, float part, uint grid_2) {
     if ((part <= 0.0)) {
         return vec3(0.0);
     }
-    vec3 _e8 = vol_in_depth_towards(ray_28, distance_7, grid_2);
+    vec3 _e8 = vol_in_depth_towards(ray_24, distance_7, grid_2);
     vec3 _e9 = vol_in_decay3_(_e8);
     float _e13 = vol_in_smallest(_e8);
     return ((_e13 > VOL_IN_OPAQUE) ? vec3(0.0) : (_e9 * part));
 }
 
-vec3 vol_in_soft_visibility(Vol_in_Ray ray_29, float distance_8, float bias_1, float slope_6, uint grid_3) {
+vec3 vol_in_soft_visibility(Vol_in_Ray ray_25, float distance_8, float bias_1, float slope_6, uint grid_3) {
     float part_1 = 0.0;
-    bool local_5 = false;
+    bool local_7 = false;
     if (VOL_IN_SOFT_LIGHTS) {
-        local_5 = (slope_6 > 0.0);
+        local_7 = (slope_6 > 0.0);
     } else {
-        local_5 = false;
+        local_7 = false;
     }
-    bool _e13 = local_5;
+    bool _e13 = local_7;
     if (_e13) {
-        float _e16 = vol_in_lit_part_of(ray_29, distance_8, (0.25 * bias_1), slope_6);
+        float _e16 = vol_in_lit_part_of(ray_25, distance_8, (0.25 * bias_1), slope_6);
         part_1 = _e16;
     } else {
-        float _e17 = vol_in_unblocked(ray_29, distance_8, bias_1);
+        float _e17 = vol_in_unblocked(ray_25, distance_8, bias_1);
         part_1 = _e17;
     }
     float _e18 = part_1;
-    vec3 _e19 = vol_in_through_media(ray_29, distance_8, _e18, grid_3);
+    vec3 _e19 = vol_in_through_media(ray_25, distance_8, _e18, grid_3);
     return _e19;
 }
 
@@ -3208,8 +3023,8 @@ vec3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact) {
     }
     float _e7 = vol_in_shadow_bias(contact.t);
     float offset_1 = max(_e7, (2.0 * contact.residual));
-    vec3 origin_2 = (contact.position + (contact.normal * offset_1));
-    Vol_in_Ray _e17 = vol_in_new_ray(origin_2, lamp.direction);
+    vec3 origin_3 = (contact.position + (contact.normal * offset_1));
+    Vol_in_Ray _e17 = vol_in_new_ray(origin_3, lamp.direction);
     vec3 _e21 = vol_in_soft_visibility(_e17, lamp.distance_, _e7, lamp.slope, lamp.grid);
     return _e21;
 }
@@ -3219,7 +3034,7 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
     float others_1 = 0.0;
     float farthest_1 = -4000000.0;
     uint solid_14 = 0u;
-    vec3 point_7 = (contact_1.position + (contact_1.normal * height));
+    vec3 point_6 = (contact_1.position + (contact_1.normal * height));
     distance_9 = height;
     others_1 = height;
     bool loop_init_28 = true;
@@ -3250,14 +3065,14 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
             vec3 lo_4 = (_e31 - vec3(height));
             vec3 _e36 = vol_in_word3_((_e28 + 4u));
             vec3 hi_4 = (_e36 + vec3(height));
-            bool _e39 = vol_in_contains(lo_4, hi_4, point_7);
+            bool _e39 = vol_in_contains(lo_4, hi_4, point_6);
             float _e40 = vol_frame_word(_e28);
             if ((_e39 && (_e40 != 0.0))) {
                 float _e44 = farthest_1;
                 uint _e45 = solid_14;
                 float _e47 = sides_6[_e45];
                 uint _e48 = solid_14;
-                float _e49 = vol_in_object_distance(_e48, point_7);
+                float _e49 = vol_in_object_distance(_e48, point_6);
                 farthest_1 = max(_e44, (_e47 * _e49));
                 float _e52 = others_1;
                 float _e53 = farthest_1;
@@ -3270,7 +3085,7 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
 }
 
 float vol_in_openness(Vol_in_Contact contact_2, float reach) {
-    float weights_3[5] = VOL_IN_WEIGHTS;
+    float weights[5] = VOL_IN_WEIGHTS;
     float sides_7[1] = float[1](0.0);
     float hidden = 0.0;
     uint index_18 = 0u;
@@ -3295,7 +3110,7 @@ float vol_in_openness(Vol_in_Contact contact_2, float reach) {
             float lack = max(((height_1 - _e19) / height_1), 0.0);
             float _e24 = hidden;
             uint _e25 = index_18;
-            float _e27 = weights_3[_e25];
+            float _e27 = weights[_e25];
             hidden = (_e24 + (_e27 * min((0.5 * lack), 1.0)));
         }
     }
@@ -3310,7 +3125,7 @@ vec3 vol_in_answer(Vol_in_Response response, Vol_in_Contact contact_3, Vol_in_Ar
     return ((response.diffuse * cosine) + (response.specular * _e14));
 }
 
-vec3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4) {
+vec3 vol_in_shade(Vol_in_Ray ray_26, Vol_in_Contact contact_4) {
     vec3 color = vec3(0.0);
     uint light_1 = 0u;
     vec3 seen = vec3(0.0);
@@ -3354,7 +3169,7 @@ vec3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4) {
                 }
                 vec3 _e60 = color;
                 vec3 _e62 = seen;
-                vec3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_30.direction);
+                vec3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_26.direction);
                 color = (_e60 + ((_e38.irradiance * _e62) * _e65));
             }
         }
@@ -3367,140 +3182,53 @@ Vol_in_Glow vol_in_clear_glow() {
     return Vol_in_Glow(vec3(0.0), vec3(1.0), vec3(0.0), vec3(1.0));
 }
 
-Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_31, float end_10) {
+Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_27, float end_7) {
     return Vol_in_StyledRays(0.0);
 }
 
-void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, vec2 t_33, inout Vol_in_Panels panels) {
-    Vol_in_PanelEnd start = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
-    Vol_in_PanelEnd stop = Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false);
-    uint end_11 = 0u;
-    vec2 masses = vec2(0.0);
-    panels.depth = vec3(0.0);
-    panels.some = false;
-    {
-        float own_8 = comb_12.own[0u];
-        Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_33);
-        vec2 _e15 = vol_in_panel_stretch(own_8, t_33, _e14);
-        Vol_in_Interior nothing = Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0));
-        Vol_in_PanelEnd _e26 = panels.starts[0u];
-        start = _e26;
-        stop = Vol_in_PanelEnd(nothing, vec3(0.0), _e15.y, (_e14.next < 0.0));
-        uvec2 _e36 = vol_in_new_ends(own_8, _e14);
-        end_11 = _e36.x;
-        bool loop_init_31 = true;
-        while(true) {
-            if (!loop_init_31) {
-                uint _e60 = end_11;
-                end_11 = (_e60 + 1u);
-            }
-            loop_init_31 = false;
-            uint _e39 = end_11;
-            if ((_e39 < _e36.y)) {
-            } else {
-                break;
-            }
-            {
-                uint _e44 = end_11;
-                float distance_14 = ((_e44 == VOL_IN_STOP_END) ? _e15.y : _e15.x);
-                vec3 _e48 = vol_in_ray_at(ray_32, distance_14);
-                Vol_in_Interior _e49 = vol_in_medium_interior(0u, _e48);
-                uint _e50 = end_11;
-                if ((_e50 == VOL_IN_STOP_END)) {
-                    stop.interior = _e49;
-                    stop.source = _e49.emission;
-                } else {
-                    start = Vol_in_PanelEnd(_e49, _e49.emission, distance_14, false);
-                }
-            }
-        }
-        bool _e65 = vol_in_has_panel(comb_12, node_12, t_33, own_8, _e14);
-        if (_e65) {
-            float _e68 = start.interior.density;
-            float _e71 = stop.interior.density;
-            vec2 densities_1 = vec2(_e68, _e71);
-            bvec2 _e74 = vol_in_open_ends(comb_12, node_12, t_33, own_8, _e14.next);
-            float _e76 = comb_12.step_;
-            vec2 _e80 = vol_in_panel_masses(_e76, (_e15.y - _e15.x), densities_1, _e74);
-            masses = _e80;
-            vec3 _e82 = panels.depth;
-            vec3 _e85 = start.interior.extinction;
-            float _e87 = masses.x;
-            vec3 _e91 = stop.interior.extinction;
-            float _e93 = masses.y;
-            panels.depth = (_e82 + ((_e85 * _e87) + (_e91 * _e93)));
-        }
-        Vol_in_PanelEnd _e99 = start;
-        panels.starts[0u] = _e99;
-        Vol_in_PanelEnd _e102 = stop;
-        panels.stops[0u] = _e102;
-        vec2 _e105 = masses;
-        panels.masses[0u] = _e105;
-        bool _e108 = panels.some;
-        vec2 _e109 = masses;
-        panels.some = (_e108 || any(greaterThan(_e109, vec2(0.0))));
-        return;
-    }
-}
-
-bool vol_in_is_end_at(Vol_in_PanelEnd end_12, uint medium_4, uint place_3) {
-    return (place_3 == (end_12.is_node ? (place_3 % 2u) : ((2u + (2u * medium_4)) + (place_3 % 2u))));
-}
-
-Vol_in_PanelEnd vol_in_panel_end(inout Vol_in_Panels panels_1, uint medium_5, bool at_stop) {
-    if (at_stop) {
-        Vol_in_PanelEnd _e5 = panels_1.stops[medium_5];
-        return _e5;
-    }
-    Vol_in_PanelEnd _e8 = panels_1.starts[medium_5];
-    return _e8;
-}
-
-uint vol_in_next_dark_place(inout Vol_in_Panels panels_2, uint first_3) {
-    uint next_1 = VOL_IN_PLACES_OF_ENDS;
-    uint place_4 = VOL_IN_PLACES_OF_ENDS;
-    bool dark = false;
-    while(true) {
-        uint _e6 = place_4;
-        if ((_e6 > 0u)) {
-        } else {
-            break;
-        }
+int vol_in_widest_spacing() {
+    int widest_1 = 1;
+    if (VOL_IN_SPACED) {
         {
-            uint _e9 = place_4;
-            place_4 = (_e9 - 1u);
-            dark = false;
-            {
-                uint _e15 = place_4;
-                Vol_in_PanelEnd _e20 = vol_in_panel_end(panels_2, 0u, ((_e15 % 2u) == VOL_IN_STOP_END));
-                uint _e21 = place_4;
-                bool _e22 = vol_in_is_end_at(_e20, 0u, _e21);
-                bool _e23 = dark;
-                vec2 _e26 = panels_2.masses[0u];
-                dark = (_e23 || (_e22 && any(greaterThan(_e26, vec2(0.0)))));
-            }
-            uint _e33 = place_4;
-            bool _e37 = panels_2.lit;
-            bool lit = ((_e33 == VOL_IN_NODE_BEFORE) && _e37);
-            uint _e39 = next_1;
-            uint _e40 = place_4;
-            uint _e41 = place_4;
-            bool _e43 = dark;
-            next_1 = (((_e41 >= first_3) && (_e43 && !(lit))) ? _e40 : _e39);
+            int _e4 = widest_1;
+            uint _e5 = vol_in_medium_word(0u);
+            float _e8 = vol_frame_word((_e5 + 8u));
+            widest_1 = max(_e4, int(_e8));
         }
     }
-    uint _e48 = next_1;
-    return _e48;
+    int _e11 = widest_1;
+    return _e11;
 }
 
-float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_34) {
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_5, int node_10, Vol_in_Chunk chunk) {
+    Vol_in_Glow glow = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    glow = before_5;
+    vec3 _e5 = vol_in_decay3_(chunk.depth);
+    vec3 _e7 = glow.light;
+    vec3 _e9 = glow.transmittance;
+    glow.light = (_e7 + (_e9 * chunk.sent));
+    vec3 _e15 = glow.transmittance;
+    glow.transmittance = (_e15 * _e5);
+    if (((node_10 % 2) == 0)) {
+        vec3 twice = (chunk.sent * (vec3(1.0) + _e5));
+        vec3 _e27 = glow.coarse_light;
+        vec3 _e29 = glow.coarse_transmittance;
+        glow.coarse_light = (_e27 + (_e29 * twice));
+        vec3 _e34 = glow.coarse_transmittance;
+        glow.coarse_transmittance = (_e34 * (_e5 * _e5));
+    }
+    Vol_in_Glow _e37 = glow;
+    return _e37;
+}
+
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_28, float t_29) {
     return 1.0;
 }
 
-vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_35, inout vec3 scatter[1]) {
+vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_29, float t_30, inout vec3 scatter[1]) {
     bool asked = false;
     float part_2 = 1.0;
-    bool local_6 = false;
+    bool local_8 = false;
     {
         vec3 _e10 = scatter[0u];
         bool scatters = any(greaterThan(_e10, vec3(0.0)));
@@ -3511,19 +3239,19 @@ vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_
     }
     bool _e22 = asked;
     if ((_e22 && lamp_3.shadows)) {
-        vec3 _e25 = vol_in_ray_at(ray_34, t_35);
+        vec3 _e25 = vol_in_ray_at(ray_29, t_30);
         Vol_in_Ray _e27 = vol_in_new_ray(_e25, lamp_3.direction);
         if (VOL_IN_STYLES) {
-            local_6 = (lamp_3.style != 0u);
+            local_8 = (lamp_3.style != 0u);
         } else {
-            local_6 = false;
+            local_8 = false;
         }
-        bool _e37 = local_6;
+        bool _e37 = local_8;
         if (_e37) {
-            float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_35);
+            float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_29, t_30);
             part_2 = _e38;
         } else {
-            float _e40 = vol_in_shadow_bias(t_35);
+            float _e40 = vol_in_shadow_bias(t_30);
             float _e41 = vol_in_unblocked(_e27, lamp_3.distance_, _e40);
             part_2 = _e41;
         }
@@ -3534,7 +3262,7 @@ vec3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_
     return vec3(1.0);
 }
 
-vec3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, vec3 point_6) {
+vec3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, vec3 point_5) {
     return vec3(1.0);
 }
 
@@ -3551,12 +3279,12 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, vec3 seen_1, vec3 direction_3,
     {
         uint _e8 = vol_in_medium_word(0u);
         float _e9 = vol_frame_word(_e8);
-        vec3 part_7 = scatter_1[0u];
-        if ((any(greaterThan(part_7, vec3(0.0))) && (_e9 > VOL_IN_UNLIT))) {
+        vec3 part_6 = scatter_1[0u];
+        if ((any(greaterThan(part_6, vec3(0.0))) && (_e9 > VOL_IN_UNLIT))) {
             float _e21 = vol_in_medium_phase(0u, _e6.x, _e6.y);
             vec3 arrives = ((_e9 == VOL_IN_UNSHADOWED) ? vec3(1.0) : seen_1);
             vec3 _e28 = source[0u];
-            source[0u] = (_e28 + ((part_7 * _e21) * (lamp_5.irradiance * arrives)));
+            source[0u] = (_e28 + ((part_6 * _e21) * (lamp_5.irradiance * arrives)));
             return;
         } else {
             return;
@@ -3564,19 +3292,19 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, vec3 seen_1, vec3 direction_3,
     }
 }
 
-void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
+void vol_in_light_place(Vol_in_Ray ray_30, float t_31, inout Vol_in_StyledRays styled_1, inout vec3 scatter_2[1], inout vec3 source_1[1]) {
     uint light_5 = 0u;
     vec3 seen_2 = vec3(0.0);
-    bool local_7 = false;
-    vec3 _e5 = vol_in_ray_at(ray_35, t_36);
+    bool local_9 = false;
+    vec3 _e5 = vol_in_ray_at(ray_30, t_31);
     uint _e6 = vol_in_light_count();
-    bool loop_init_32 = true;
+    bool loop_init_31 = true;
     while(true) {
-        if (!loop_init_32) {
+        if (!loop_init_31) {
             uint _e31 = light_5;
             light_5 = (_e31 + 1u);
         }
-        loop_init_32 = false;
+        loop_init_31 = false;
         uint _e9 = light_5;
         if ((_e9 < _e6)) {
         } else {
@@ -3586,14 +3314,14 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays s
             uint _e11 = light_5;
             Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
             uint _e13 = light_5;
-            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_36, scatter_2);
+            vec3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_30, t_31, scatter_2);
             seen_2 = _e14;
             if (VOL_IN_STYLES) {
-                local_7 = (_e12.style != 0u);
+                local_9 = (_e12.style != 0u);
             } else {
-                local_7 = false;
+                local_9 = false;
             }
-            bool _e23 = local_7;
+            bool _e23 = local_9;
             if (_e23) {
                 vec3 _e24 = seen_2;
                 uint _e25 = light_5;
@@ -3601,319 +3329,159 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays s
                 seen_2 = (_e24 * _e26);
             }
             vec3 _e28 = seen_2;
-            vol_in_scatter_light(_e12, _e28, ray_35.direction, scatter_2, source_1);
+            vol_in_scatter_light(_e12, _e28, ray_30.direction, scatter_2, source_1);
         }
     }
     return;
 }
 
-bool vol_in_light_ends(Vol_in_Ray ray_36, inout Vol_in_StyledRays styled_2, inout Vol_in_Panels panels_3) {
-    bool lit_after = false;
-    uint place_5 = 0u;
-    float distance_10 = 0.0;
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_31, float t_32, inout Vol_in_StyledRays styled_2, inout float weights_1[1], inout Vol_in_Interior interiors[1]) {
+    vec3 depth_2 = vec3(0.0);
     vec3 scatter_3[1] = vec3[1](vec3(0.0));
     vec3 source_2[1] = vec3[1](vec3(0.0));
-    uint _e6 = vol_in_next_dark_place(panels_3, 0u);
-    place_5 = _e6;
-    while(true) {
-        uint _e8 = place_5;
-        if ((_e8 < VOL_IN_PLACES_OF_ENDS)) {
-        } else {
-            break;
-        }
-        {
-            uint _e11 = place_5;
-            bool at_stop_2 = ((_e11 % 2u) == VOL_IN_STOP_END);
-            distance_10 = 0.0;
-            scatter_3 = vec3[1](vec3(0.0));
-            source_2 = vec3[1](vec3(0.0));
-            {
-                Vol_in_PanelEnd _e23 = vol_in_panel_end(panels_3, 0u, at_stop_2);
-                uint _e24 = place_5;
-                bool _e25 = vol_in_is_end_at(_e23, 0u, _e24);
-                scatter_3[0u] = (_e25 ? _e23.interior.scattering : vec3(0.0));
-                source_2[0u] = _e23.source;
-                float _e34 = distance_10;
-                distance_10 = (_e25 ? _e23.distance_ : _e34);
-            }
-            float _e37 = distance_10;
-            vol_in_light_place(ray_36, _e37, styled_2, scatter_3, source_2);
-            {
-                if (at_stop_2) {
-                    vec3 _e43 = source_2[0u];
-                    panels_3.stops[0u].source = _e43;
-                } else {
-                    vec3 _e48 = source_2[0u];
-                    panels_3.starts[0u].source = _e48;
-                }
-            }
-            bool _e49 = lit_after;
-            uint _e50 = place_5;
-            lit_after = (_e49 || (_e50 == VOL_IN_NODE_AFTER));
-            uint _e54 = place_5;
-            uint _e57 = vol_in_next_dark_place(panels_3, (_e54 + 1u));
-            place_5 = _e57;
-        }
-    }
-    bool _e58 = lit_after;
-    return _e58;
-}
-
-Vol_in_Glow vol_in_gather(Vol_in_Glow before_6, int node_13, Vol_in_Chunk chunk) {
-    Vol_in_Glow glow = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    glow = before_6;
-    vec3 _e5 = vol_in_decay3_(chunk.depth);
-    vec3 _e7 = glow.light;
-    vec3 _e9 = glow.transmittance;
-    glow.light = (_e7 + (_e9 * chunk.sent));
-    vec3 _e15 = glow.transmittance;
-    glow.transmittance = (_e15 * _e5);
-    if (((node_13 % 2) == 0)) {
-        vec3 twice = (chunk.sent * (vec3(1.0) + _e5));
-        vec3 _e27 = glow.coarse_light;
-        vec3 _e29 = glow.coarse_transmittance;
-        glow.coarse_light = (_e27 + (_e29 * twice));
-        vec3 _e34 = glow.coarse_transmittance;
-        glow.coarse_transmittance = (_e34 * (_e5 * _e5));
-    }
-    Vol_in_Glow _e37 = glow;
-    return _e37;
-}
-
-vec3 vol_in_panel_sent(vec2 masses_1, vec3 start_1, vec3 end_13, vec3 depth_5) {
-    vec3 _e4 = vol_in_mean_decay3_(depth_5);
-    vec3 steady = (start_1 * _e4);
-    vec3 _e7 = vol_in_decay_moment3_(depth_5);
-    vec3 change = ((end_13 - start_1) * _e7);
-    vec3 thick = ((steady + change) * (masses_1.x + masses_1.y));
-    vec3 _e16 = vol_in_decay3_(depth_5);
-    vec3 thin = ((start_1 * masses_1.x) + ((end_13 * _e16) * masses_1.y));
-    vec3 rise_4 = min(max(((depth_5 - vec3(0.125)) * 2.6666667), vec3(0.0)), vec3(1.0));
-    return (thin + ((thick - thin) * rise_4));
-}
-
-vec3 vol_in_panels_sent(inout Vol_in_Panels panels_4) {
     vec3 sent = vec3(0.0);
-    vec3 depth_8 = panels_4.depth;
     {
-        vec2 masses_2 = panels_4.masses[0u];
-        if (any(greaterThan(masses_2, vec2(0.0)))) {
-            vec3 _e14 = sent;
-            vec3 _e18 = panels_4.starts[0u].source;
-            vec3 _e22 = panels_4.stops[0u].source;
-            vec3 _e23 = vol_in_panel_sent(masses_2, _e18, _e22, depth_8);
-            sent = (_e14 + _e23);
-        }
-    }
-    vec3 _e25 = sent;
-    return _e25;
-}
-
-Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14) {
-    Vol_in_Glow glow_1 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    Vol_in_StyledRays styled_3 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_13 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    Vol_in_Panels panels_5 = Vol_in_Panels(Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), Vol_in_PanelEnd[1](Vol_in_PanelEnd(Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)), vec3(0.0), 0.0, false)), vec2[1](vec2(0.0)), vec3(0.0), false, false);
-    int node_14 = 0;
-    bool lit_after_1 = false;
-    Vol_in_Glow _e2 = vol_in_clear_glow();
-    glow_1 = _e2;
-    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_37, end_14);
-    styled_3 = _e4;
-    float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    Vol_in_Comb _e8 = vol_in_new_comb(ray_37, end_14, _e7);
-    comb_13 = _e8;
-    int _e12 = comb_13.first;
-    node_14 = (_e12 - 1);
-    bool loop_init_33 = true;
-    while(true) {
-        if (!loop_init_33) {
-            int _e54 = node_14;
-            int _e56 = vol_in_next_node(comb_13, _e54, 1);
-            node_14 = _e56;
-        }
-        loop_init_33 = false;
-        int _e16 = node_14;
-        int _e18 = comb_13.last;
-        if ((_e16 <= _e18)) {
-        } else {
-            break;
-        }
-        {
-            int _e20 = node_14;
-            float _e21 = vol_in_panel_node(comb_13, _e20);
-            int _e22 = node_14;
-            float _e25 = vol_in_panel_node(comb_13, (_e22 + 1));
-            vec2 t_41 = vec2(_e21, _e25);
-            int _e27 = node_14;
-            vol_in_find_panels(ray_37, comb_13, _e27, t_41, panels_5);
-            lit_after_1 = false;
-            bool _e31 = panels_5.some;
-            if (_e31) {
-                if (VOL_IN_LIT_MEDIA) {
-                    bool _e33 = vol_in_light_ends(ray_37, styled_3, panels_5);
-                    lit_after_1 = _e33;
-                }
-                Vol_in_Glow _e34 = glow_1;
-                int _e35 = node_14;
-                vec3 _e36 = vol_in_panels_sent(panels_5);
-                vec3 _e38 = panels_5.depth;
-                Vol_in_Glow _e40 = vol_in_gather(_e34, _e35, Vol_in_Chunk(_e36, _e38));
-                glow_1 = _e40;
-            }
-            vec3 _e42 = glow_1.transmittance;
-            float _e43 = vol_in_largest(_e42);
-            if ((_e43 < VOL_IN_STOP)) {
-                break;
-            }
-            bool _e47 = lit_after_1;
-            panels_5.lit = _e47;
-            {
-                Vol_in_PanelEnd _e53 = panels_5.stops[0u];
-                panels_5.starts[0u] = _e53;
-            }
-        }
-    }
-    Vol_in_Glow _e57 = glow_1;
-    return _e57;
-}
-
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_37, inout Vol_in_StyledRays styled_4, inout float weights_4[1]) {
-    vec3 depth_6 = vec3(0.0);
-    vec3 scatter_4[1] = vec3[1](vec3(0.0));
-    vec3 source_3[1] = vec3[1](vec3(0.0));
-    vec3 sent_1 = vec3(0.0);
-    vec3 _e4 = vol_in_ray_at(ray_38, t_37);
-    {
-        float weight_2 = weights_4[0u];
-        scatter_4[0u] = vec3(0.0);
-        source_3[0u] = vec3(0.0);
-        if ((weight_2 > 0.0)) {
-            Vol_in_Interior _e21 = vol_in_medium_interior(0u, _e4);
-            float mass_1 = (max(_e21.density, 0.0) * weight_2);
-            vec3 _e26 = depth_6;
-            depth_6 = (_e26 + (_e21.extinction * mass_1));
-            scatter_4[0u] = (_e21.scattering * mass_1);
-            source_3[0u] = (_e21.emission * mass_1);
+        float weight_1 = weights_1[0u];
+        scatter_3[0u] = vec3(0.0);
+        source_2[0u] = vec3(0.0);
+        if ((weight_1 > 0.0)) {
+            Vol_in_Interior interior = interiors[0u];
+            float mass = (max(interior.density, 0.0) * weight_1);
+            vec3 _e27 = depth_2;
+            depth_2 = (_e27 + (interior.extinction * mass));
+            scatter_3[0u] = (interior.scattering * mass);
+            source_2[0u] = (interior.emission * mass);
         }
     }
     if (VOL_IN_LIT_MEDIA) {
-        vol_in_light_place(ray_38, t_37, styled_4, scatter_4, source_3);
+        vol_in_light_place(ray_31, t_32, styled_2, scatter_3, source_2);
     }
     {
-        vec3 _e41 = sent_1;
-        vec3 _e43 = source_3[0u];
-        vec3 _e44 = depth_6;
-        vec3 _e45 = vol_in_mean_decay3_(_e44);
-        sent_1 = (_e41 + (_e43 * _e45));
+        vec3 _e42 = sent;
+        vec3 _e44 = source_2[0u];
+        vec3 _e45 = depth_2;
+        vec3 _e46 = vol_in_mean_decay3_(_e45);
+        sent = (_e42 + (_e44 * _e46));
     }
-    vec3 _e48 = sent_1;
-    vec3 _e49 = depth_6;
-    return Vol_in_Chunk(_e48, _e49);
+    vec3 _e49 = sent;
+    vec3 _e50 = depth_2;
+    return Vol_in_Chunk(_e49, _e50);
 }
 
-Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_39, float end_15) {
-    Vol_in_Glow glow_2 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    Vol_in_StyledRays styled_5 = Vol_in_StyledRays(0.0);
-    Vol_in_Comb comb_14 = Vol_in_Comb(0.0, 0.0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), float[1](0.0));
-    float weights_5[1] = float[1](0.0);
-    int node_15 = 0;
+Vol_in_Glow vol_in_march(Vol_in_Ray ray_32, float end_8) {
+    Vol_in_Glow glow_1 = Vol_in_Glow(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    Vol_in_StyledRays styled_3 = Vol_in_StyledRays(0.0);
+    Vol_in_Comb comb_15 = Vol_in_Comb(0.0, 0.0, 0, 0.0, 0, 0, Vol_in_Runs[1](Vol_in_Runs(vec4(0.0), vec4(0.0))), ivec2[1](ivec2(0)), float[1](0.0), 0, float[1](0.0));
+    float weights_2[1] = float[1](0.0);
+    Vol_in_Interior here[1] = Vol_in_Interior[1](Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)));
+    Vol_in_Interior ahead_3[1] = Vol_in_Interior[1](Vol_in_Interior(0.0, vec3(0.0), vec3(0.0), vec3(0.0)));
+    Vol_in_Node node_11 = Vol_in_Node(0, 0, 0);
+    bool some = false;
     Vol_in_Glow _e2 = vol_in_clear_glow();
-    glow_2 = _e2;
-    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_39, end_15);
-    styled_5 = _e4;
+    glow_1 = _e2;
+    Vol_in_StyledRays _e4 = vol_in_style_rays(ray_32, end_8);
+    styled_3 = _e4;
     float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    Vol_in_Comb _e8 = vol_in_new_comb(ray_39, end_15, _e7);
-    comb_14 = _e8;
-    int _e12 = comb_14.first;
-    node_15 = (_e12 - 2);
-    bool loop_init_34 = true;
+    int _e8 = vol_in_widest_spacing();
+    Vol_in_Comb _e9 = vol_in_new_comb(ray_32, end_8, _e7, _e8);
+    comb_15 = _e9;
+    Vol_in_Node _e15 = vol_in_start_node(comb_15, 2);
+    node_11 = _e15;
+    bool loop_init_32 = true;
     while(true) {
-        if (!loop_init_34) {
-            int _e37 = node_15;
-            int _e39 = vol_in_next_node(comb_14, _e37, 2);
-            node_15 = _e39;
+        if (!loop_init_32) {
+            Vol_in_Node _e61 = node_11;
+            Vol_in_Node _e63 = vol_in_next_node(comb_15, _e61, 2);
+            node_11 = _e63;
         }
-        loop_init_34 = false;
-        int _e16 = node_15;
-        int _e18 = comb_14.last;
-        if ((_e16 <= _e18)) {
+        loop_init_32 = false;
+        int _e18 = node_11.first;
+        int _e20 = comb_15.last;
+        if ((_e18 <= _e20)) {
         } else {
             break;
         }
         {
-            int _e20 = node_15;
-            bool _e21 = vol_in_weigh(ray_39, comb_14, _e20, weights_5);
-            if (_e21) {
-                Vol_in_Glow _e22 = glow_2;
-                int _e23 = node_15;
-                int _e24 = node_15;
-                float _e26 = comb_14.step_;
-                float _e28 = comb_14.offset;
-                float _e29 = vol_in_node_distance(_e24, _e26, _e28);
-                Vol_in_Chunk _e30 = vol_in_node_chunk(ray_39, _e29, styled_5, weights_5);
-                Vol_in_Glow _e31 = vol_in_gather(_e22, _e23, _e30);
-                glow_2 = _e31;
+            Vol_in_Node _e22 = node_11;
+            Vol_in_Node _e23 = vol_in_node_after(comb_15, _e22);
+            some = false;
+            {
+                Vol_in_Node _e28 = node_11;
+                float _e29 = vol_in_weigh(ray_32, 0u, comb_15, _e28, _e23);
+                weights_2[0u] = _e29;
+                Vol_in_Interior _e32 = ahead_3[0u];
+                here[0u] = _e32;
+                float _e35 = comb_15.own[0u];
+                if ((_e35 < 0.0)) {
+                    float _e39 = vol_in_middle_of(comb_15, _e23);
+                    vec3 _e40 = vol_in_ray_at(ray_32, _e39);
+                    Vol_in_Interior _e41 = vol_in_medium_interior(0u, _e40);
+                    ahead_3[0u] = _e41;
+                }
+                bool _e42 = some;
+                float _e44 = weights_2[0u];
+                some = (_e42 || (_e44 > 0.0));
             }
-            vec3 _e33 = glow_2.transmittance;
-            float _e34 = vol_in_largest(_e33);
-            if ((_e34 < VOL_IN_STOP)) {
+            bool _e48 = some;
+            if (_e48) {
+                Vol_in_Glow _e49 = glow_1;
+                int _e51 = node_11.number;
+                Vol_in_Node _e52 = node_11;
+                float _e53 = vol_in_middle_of(comb_15, _e52);
+                Vol_in_Chunk _e54 = vol_in_node_chunk(ray_32, _e53, styled_3, weights_2, here);
+                Vol_in_Glow _e55 = vol_in_gather(_e49, _e51, _e54);
+                glow_1 = _e55;
+            }
+            vec3 _e57 = glow_1.transmittance;
+            float _e58 = vol_in_largest(_e57);
+            if ((_e58 < VOL_IN_STOP)) {
                 break;
             }
         }
     }
-    Vol_in_Glow _e40 = glow_2;
-    return _e40;
+    Vol_in_Glow _e64 = glow_1;
+    return _e64;
 }
 
-Vol_in_Glow vol_in_march(Vol_in_Ray ray_40, float end_16) {
-    if (VOL_IN_CORRECTED) {
-        Vol_in_Glow _e3 = vol_in_march_panels(ray_40, end_16);
-        return _e3;
-    }
-    Vol_in_Glow _e4 = vol_in_march_nodes(ray_40, end_16);
-    return _e4;
-}
-
-Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_41) {
+Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_33) {
     vec3 behind = vec3(0.0);
-    float end_17 = VOL_IN_FAR;
-    float depth_7 = VOL_IN_NO_DEPTH;
-    Vol_in_Contact _e1 = vol_in_trace(ray_41);
+    float end_9 = VOL_IN_FAR;
+    float depth_3 = VOL_IN_NO_DEPTH;
+    Vol_in_Contact _e1 = vol_in_trace(ray_33);
     vec3 _e3 = vol_in_word3_(VOL_IN_AT_BACKGROUND);
     behind = _e3;
     if (_e1.hit) {
-        vec3 _e10 = vol_in_shade(ray_41, _e1);
+        vec3 _e10 = vol_in_shade(ray_33, _e1);
         behind = _e10;
-        end_17 = _e1.t;
+        end_9 = _e1.t;
         vec3 _e15 = vol_in_word3_(VOL_IN_AT_FORWARD);
-        float _e16 = vol_in_dot3_(ray_41.direction, _e15);
-        depth_7 = (_e1.t * _e16);
+        float _e16 = vol_in_dot3_(ray_33.direction, _e15);
+        depth_3 = (_e1.t * _e16);
     }
-    float _e18 = end_17;
-    Vol_in_Glow _e19 = vol_in_march(ray_41, _e18);
+    float _e18 = end_9;
+    Vol_in_Glow _e19 = vol_in_march(ray_33, _e18);
     vec3 _e22 = behind;
     vec3 coarse = (_e19.coarse_light + (_e19.coarse_transmittance * _e22));
     vec3 _e27 = behind;
     vec3 color_2 = (_e19.light + (_e19.transmittance * _e27));
     float _e31 = vol_in_length3_((coarse - color_2));
     float doubt = (_e31 * VOL_IN_ROOT_THIRD);
-    float _e39 = depth_7;
+    float _e39 = depth_3;
     return Vol_in_Radiance(color_2, (_e1.hit ? vec3(0.0) : _e19.transmittance), _e39, doubt);
 }
 
 vec2 vol_in_place_in_pixel(uint index_19) {
-    uint step_3 = ((index_19 + 1u) / 2u);
-    uint signed = (((index_19 % 2u) == 1u) ? step_3 : (0u - step_3));
-    uvec2 place_14 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
-    return (vec2(place_14) * 1.5258789e-5);
+    uint step_7 = ((index_19 + 1u) / 2u);
+    uint signed = (((index_19 % 2u) == 1u) ? step_7 : (0u - step_7));
+    uvec2 place_11 = (((uvec2(signed) * VOL_IN_STRIDE) + uvec2(2147483648u)) >> uvec2(16u));
+    return (vec2(place_11) * 1.5258789e-5);
 }
 
-Vol_in_Ray vol_in_camera_ray(vec2 place_6) {
+Vol_in_Ray vol_in_camera_ray(vec2 place_3) {
     float _e5 = vol_frame_word(VOL_IN_AT_SIZE);
-    float u_5 = (((2.0 * place_6.x) / _e5) - 1.0);
+    float u_5 = (((2.0 * place_3.x) / _e5) - 1.0);
     float _e13 = vol_frame_word(5u);
-    float v_8 = (1.0 - ((2.0 * place_6.y) / _e13));
+    float v_8 = (1.0 - ((2.0 * place_3.y) / _e13));
     vec3 _e18 = vol_in_word3_(VOL_IN_AT_FORWARD);
     vec3 _e20 = vol_in_word3_(VOL_IN_AT_RIGHT);
     vec3 sideways = (_e18 + (_e20 * u_5));
@@ -3926,33 +3494,33 @@ Vol_in_Ray vol_in_camera_ray(vec2 place_6) {
 }
 
 float vol_in_comb_shift(uvec2 pixel, uint index_20) {
-    uint place_15 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
-    return ((float(((place_15 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+    uint place_12 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_12 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
 }
 
 Vol_in_Ray vol_in_pixel_ray(uvec2 pixel_1, uint index_21, uint corner) {
-    Vol_in_Ray ray_42 = Vol_in_Ray(vec3(0.0), vec3(0.0), 0.0);
+    Vol_in_Ray ray_34 = Vol_in_Ray(vec3(0.0), vec3(0.0), 0.0);
     bool is_probe = (corner < VOL_IN_NO_CORNER);
     vec2 _e5 = vol_in_place_in_pixel(index_21);
     vec2 aside_2 = (is_probe ? vec2(uvec2((corner % 2u), (corner / 2u))) : _e5);
     Vol_in_Ray _e15 = vol_in_camera_ray((vec2(pixel_1) + aside_2));
-    ray_42 = _e15;
+    ray_34 = _e15;
     float _e18 = vol_in_comb_shift(pixel_1, index_21);
-    ray_42.shift = (is_probe ? 0.0 : _e18);
-    Vol_in_Ray _e21 = ray_42;
+    ray_34.shift = (is_probe ? 0.0 : _e18);
+    Vol_in_Ray _e21 = ray_34;
     return _e21;
 }
 
-Vol_in_Mean vol_in_add_probe(Vol_in_Mean old, Vol_in_Radiance probe_1) {
+Vol_in_Mean vol_in_add_probe(Vol_in_Mean old, Vol_in_Radiance probe) {
     Vol_in_Mean mean_2 = Vol_in_Mean(0u, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
     mean_2 = old;
     vec3 _e5 = mean_2.color;
-    vec3 color_3 = (probe_1.color - _e5);
+    vec3 color_3 = (probe.color - _e5);
     float _e9 = mean_2.color_spread;
     float _e10 = vol_in_dot3_(color_3, color_3);
     mean_2.color_spread = (_e9 + _e10);
     vec3 _e14 = mean_2.transmittance;
-    vec3 transmittance_1 = (probe_1.transmittance - _e14);
+    vec3 transmittance_1 = (probe.transmittance - _e14);
     float _e18 = mean_2.transmittance_spread;
     float _e19 = vol_in_dot3_(transmittance_1, transmittance_1);
     mean_2.transmittance_spread = (_e18 + _e19);
@@ -4001,42 +3569,42 @@ Vol_in_Mean vol_in_add_sample(Vol_in_Mean old_1, Vol_in_Radiance sample_) {
 }
 
 bool vol_in_is_probed() {
-    bool local_8 = false;
+    bool local_10 = false;
     float _e1 = vol_frame_word(VOL_IN_AT_TOLERANCE);
     if ((_e1 > 0.0)) {
         float _e7 = vol_frame_word(VOL_IN_AT_SAMPLES);
-        local_8 = (uint(_e7) > VOL_IN_FIRST_ROUND);
+        local_10 = (uint(_e7) > VOL_IN_FIRST_ROUND);
     } else {
-        local_8 = false;
+        local_10 = false;
     }
-    bool _e12 = local_8;
+    bool _e12 = local_10;
     return _e12;
 }
 
-Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_7, uint last_4) {
+Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_6, uint last_3) {
     Vol_in_Mean mean_4 = Vol_in_Mean(0u, vec3(0.0), vec3(0.0), 0.0, 0.0, 0.0, 0.0);
     uint corner_1 = VOL_IN_NO_CORNER;
-    bool local_9 = false;
-    bool local_10 = false;
     bool local_11 = false;
-    mean_4 = before_7;
+    bool local_12 = false;
+    bool local_13 = false;
+    mean_4 = before_6;
     while(true) {
         uint _e6 = corner_1;
         if (!((_e6 < VOL_IN_NO_CORNER))) {
             uint _e13 = mean_4.count;
-            if ((_e13 < last_4)) {
+            if ((_e13 < last_3)) {
                 Vol_in_Mean _e17 = mean_4;
                 bool _e18 = vol_in_is_done(_e17);
-                local_10 = !(_e18);
+                local_12 = !(_e18);
             } else {
-                local_10 = false;
+                local_12 = false;
             }
-            bool _e21 = local_10;
-            local_9 = _e21;
+            bool _e21 = local_12;
+            local_11 = _e21;
         } else {
-            local_9 = true;
+            local_11 = true;
         }
-        bool _e23 = local_9;
+        bool _e23 = local_11;
         if (_e23) {
         } else {
             break;
@@ -4061,11 +3629,11 @@ Vol_in_Mean vol_in_sample_pixel(uvec2 pixel_2, Vol_in_Mean before_7, uint last_4
                 bool _e41 = vol_in_is_probed();
                 if (_e41) {
                     uint _e45 = mean_4.count;
-                    local_11 = (_e45 == VOL_IN_FIRST_ROUND);
+                    local_13 = (_e45 == VOL_IN_FIRST_ROUND);
                 } else {
-                    local_11 = false;
+                    local_13 = false;
                 }
-                bool _e49 = local_11;
+                bool _e49 = local_13;
                 corner_1 = (_e49 ? 0u : VOL_IN_NO_CORNER);
             }
         }
@@ -4093,16 +3661,16 @@ vec4 vol_radiance(vec3 origin_1, vec3 direction_4) {
     float _e2 = vol_in_length3_(direction_4);
     Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / vec3(_e2)));
     Vol_in_Radiance _e6 = vol_in_radiance(_e5);
-    vec3 t_42 = _e6.transmittance;
-    float clear_3 = (((t_42.x + t_42.y) + t_42.z) * 0.33333334);
+    vec3 t_35 = _e6.transmittance;
+    float clear_3 = (((t_35.x + t_35.y) + t_35.z) * 0.33333334);
     return vec4(_e6.color, (1.0 - clear_3));
 }
 
-vec4 vol_pixel(vec2 place_7) {
-    Vol_in_Ray _e1 = vol_in_camera_ray(place_7);
+vec4 vol_pixel(vec2 place_4) {
+    Vol_in_Ray _e1 = vol_in_camera_ray(place_4);
     Vol_in_Radiance _e2 = vol_in_radiance(_e1);
-    vec3 t_43 = _e2.transmittance;
-    float clear_4 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
+    vec3 t_36 = _e2.transmittance;
+    float clear_4 = (((t_36.x + t_36.y) + t_36.z) * 0.33333334);
     return vec4(_e2.color, (1.0 - clear_4));
 }
 

@@ -224,36 +224,26 @@ struct Vol_in_Runs {
 struct Vol_in_Comb {
     float step_;
     float offset;
+    int block;
     float end;
     int first;
     int last;
-    int _pad5_0;
-    int _pad5_1;
-    int _pad5_2;
+    int _pad6_0;
+    int _pad6_1;
     Vol_in_Runs all_[1];
     int2 runs[1];
     float before[1];
+    int steps_before;
     float own[1];
-};
-
-struct Vol_in_Between {
-    float next;
-    int _pad1_0;
-    float2 walls;
-    uint count;
     int _end_pad_0;
+    int _end_pad_1;
+    int _end_pad_2;
 };
 
-struct Vol_in_Gap {
-    float2 start;
-    float2 stop;
-};
-
-struct Vol_in_Crossing {
-    float2 inside;
-    float2 outside;
-    uint moved;
-    int _end_pad_0;
+struct Vol_in_Node {
+    int first;
+    int steps;
+    int number;
 };
 
 struct Vol_in_Glow {
@@ -269,27 +259,6 @@ struct Vol_in_Glow {
 
 struct Vol_in_StyledRays {
     float none;
-};
-
-struct Vol_in_PanelEnd {
-    Vol_in_Interior interior;
-    float3 source;
-    float distance_;
-    bool is_node;
-    int _end_pad_0;
-    int _end_pad_1;
-    int _end_pad_2;
-};
-
-struct Vol_in_Panels {
-    Vol_in_PanelEnd starts[1];
-    Vol_in_PanelEnd stops[1];
-    float2 masses[1];
-    int _pad3_0;
-    int _pad3_1;
-    float3 depth;
-    bool some;
-    bool lit_;
 };
 
 struct Vol_in_Chunk {
@@ -350,7 +319,7 @@ ret_Constructarray5_float_ Constructarray5_float_(float arg0, float arg1, float 
 static const float4 vol_uniforms[7] = Constructarray7_float4_(float4(0.0, 0.0033465358, 0.0051815165, 0.014443844), float4(10.0, 30.0, 1.0, 1.1), float4(4.5, 0.6981317, 0.0, 0.4), float4(0.2, 2.2, 1.5609045, 0.69090724), float4(1000000000000000.0, 0.6, 0.5264106, 0.79870445), float4(1.1264106, 5.0, 0.0, 0.0), float4(-0.4, 0.8, 0.3, 12.0));
 static const float4 vol_curves[45] = Constructarray45_float4_(float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, -0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, 0.055, 0.0, -0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, -0.5, 1.1295928), float4(-1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 0.0, 1.0, 2.2591856), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.33686078, 0.9263671), float4(0.16843039, -0.33686078, 0.9263671, -0.16843039), float4(-4.5778493e-6, -4.598711e-6, -4.576359e-6, 0.20000459), float4(1.1000047, 0.10000458, 0.0, 0.0), float4(0.2, 1.1, 0.1, -2.9802323e-9), float4(-2.3841858e-8, -1.4901161e-9, 0.0, 0.55), float4(0.0, -0.2, 0.0, -0.1), float4(0.0, 1.0, 0.0, -0.029880034), float4(0.0, 0.9995535, 0.9995535, 0.0), float4(0.029880034, -0.055, 0.0, 0.11), float4(0.05, 0.0, 0.3025, 0.0), float4(20.0, 0.5, 0.5, 1.1295928), float4(1.0, 0.2236068, 1.3528211, 0.12298374), float4(0.0, 1.0, 0.0, 2.2591856), float4(0.0, 2.2, 0.0, 0.0), float4(-4.7683717e-8, 0.0, -0.33686078, 0.9263671), float4(-0.16843039, 0.0, 1.0, 0.0), float4(-4.5778493e-6, 1.0999953, -4.576359e-6, 0.20000459), float4(2.2000048, 0.10000458, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0));
 static const uint4 vol_permutation[64] = Constructarray64_uint4_(uint4(151u, 160u, 137u, 91u), uint4(90u, 15u, 131u, 13u), uint4(201u, 95u, 96u, 53u), uint4(194u, 233u, 7u, 225u), uint4(140u, 36u, 103u, 30u), uint4(69u, 142u, 8u, 99u), uint4(37u, 240u, 21u, 10u), uint4(23u, 190u, 6u, 148u), uint4(247u, 120u, 234u, 75u), uint4(0u, 26u, 197u, 62u), uint4(94u, 252u, 219u, 203u), uint4(117u, 35u, 11u, 32u), uint4(57u, 177u, 33u, 88u), uint4(237u, 149u, 56u, 87u), uint4(174u, 20u, 125u, 136u), uint4(171u, 168u, 68u, 175u), uint4(74u, 165u, 71u, 134u), uint4(139u, 48u, 27u, 166u), uint4(77u, 146u, 158u, 231u), uint4(83u, 111u, 229u, 122u), uint4(60u, 211u, 133u, 230u), uint4(220u, 105u, 92u, 41u), uint4(55u, 46u, 245u, 40u), uint4(244u, 102u, 143u, 54u), uint4(65u, 25u, 63u, 161u), uint4(1u, 216u, 80u, 73u), uint4(209u, 76u, 132u, 187u), uint4(208u, 89u, 18u, 169u), uint4(200u, 196u, 135u, 130u), uint4(116u, 188u, 159u, 86u), uint4(164u, 100u, 109u, 198u), uint4(173u, 186u, 3u, 64u), uint4(52u, 217u, 226u, 250u), uint4(124u, 123u, 5u, 202u), uint4(38u, 147u, 118u, 126u), uint4(255u, 82u, 85u, 212u), uint4(207u, 206u, 59u, 227u), uint4(47u, 16u, 58u, 17u), uint4(182u, 189u, 28u, 42u), uint4(223u, 183u, 170u, 213u), uint4(119u, 248u, 152u, 2u), uint4(44u, 154u, 163u, 70u), uint4(221u, 153u, 101u, 155u), uint4(167u, 43u, 172u, 9u), uint4(129u, 22u, 39u, 253u), uint4(19u, 98u, 108u, 110u), uint4(79u, 113u, 224u, 232u), uint4(178u, 185u, 112u, 104u), uint4(218u, 246u, 97u, 228u), uint4(251u, 34u, 242u, 193u), uint4(238u, 210u, 144u, 12u), uint4(191u, 179u, 162u, 241u), uint4(81u, 51u, 145u, 235u), uint4(249u, 14u, 239u, 107u), uint4(49u, 192u, 214u, 31u), uint4(181u, 199u, 106u, 157u), uint4(184u, 84u, 204u, 176u), uint4(115u, 121u, 50u, 45u), uint4(127u, 4u, 150u, 254u), uint4(138u, 236u, 205u, 93u), uint4(222u, 114u, 67u, 29u), uint4(24u, 72u, 243u, 141u), uint4(128u, 195u, 78u, 66u), uint4(215u, 61u, 156u, 180u));
-static const float4 vol_frame[43] = Constructarray43_float4_(float4(0.0, 0.0, 960.0, 540.0), float4(960.0, 540.0, 0.004680485, 0.00936097), float4(0.0, 1.1, 4.5, 0.0), float4(0.0, -1.0, 0.6470582, 0.0), float4(0.0, 0.0, 0.36397022, 0.0), float4(0.0033465358, 0.0051815165, 0.014443844, 1.0), float4(1.0, 0.0, 1.0, 3.0), float4(-0.60002863, -0.60002863, -0.60002863, 1.000029), float4(2.8000307, 0.8000288, 16.0, 1.0), float4(-0.42399916, 0.8479983, 0.31799936, 12.0), float4(12.0, 12.0, 1.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, -0.07849332), float4(-0.03100111, -0.08124195, 0.12536836, 0.16850124), float4(0.10467947, -0.038403668, 0.107851274, -0.064069755), float4(0.1727788, 0.3046489, 0.13125731, -0.008553555), float4(0.24621235, -0.05407174, 0.21792875, 0.44128785), float4(0.15875934, 0.010998466, 0.3846571, -0.051262047), float4(0.26087677, 0.57784307, 0.18719967, 0.020236308), float4(0.52379215, -0.05564443, 0.30163896, 0.71370804), float4(0.21658209, 0.019191828, 0.6642433, -0.067210674), float4(0.3401835, 0.84825695, 0.24689835, 0.007948153), float4(0.8066414, -0.08580606, 0.3764272, 0.98085874), float4(0.27799374, -0.0131498, 0.9516064, -0.1115874), float4(0.41002518, 1.1108938, 0.3100251, -0.04768115), float4(1.087319, -0.14611875, 0.44455653, 1.2501811), float4(0.34455645, -0.0956435, 1.2085621, -0.1894001), float4(0.48001888, 1.403938, 0.3815878, -0.15293887), float4(1.3255475, -0.23986568, 0.5123142, 1.5619527), float4(0.41955334, -0.21955688, 1.4378978, -0.29706544), float4(0.5414322, 1.7246025, 0.4580031, -0.29523104), float4(1.5453081, -0.36114627, 0.5671063, 1.8921922), float4(0.4970839, -0.37969407, 1.6475452, -0.43204588), float4(0.5890693, 2.0649552, 0.53673345, -0.47268757), float4(1.7444439, -0.5097059, 0.6070627, 2.2430565), float4(0.57689345, -0.5739689, 1.8359008, -0.5940731), float4(0.62084395, 2.4265997, 0.6175107, 0.0));
+static const float4 vol_frame[43] = Constructarray43_float4_(float4(0.0, 0.0, 960.0, 540.0), float4(960.0, 540.0, 0.004680485, 0.00936097), float4(0.0, 1.1, 4.5, 0.0), float4(0.0, -1.0, 0.6470582, 0.0), float4(0.0, 0.0, 0.36397022, 0.0), float4(0.0033465358, 0.0051815165, 0.014443844, 1.0), float4(1.0, 0.0, 1.0, 3.0), float4(-0.60002863, -0.60002863, -0.60002863, 1.000029), float4(2.8000307, 0.8000288, 16.0, 1.0), float4(1.0, -0.42399916, 0.8479983, 0.31799936), float4(12.0, 12.0, 12.0, 1.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(0.0, 0.0, 0.0, 0.0), float4(-0.07849332, -0.03100111, -0.08124195, 0.12536836), float4(0.16850124, 0.10467947, -0.038403668, 0.107851274), float4(-0.064069755, 0.1727788, 0.3046489, 0.13125731), float4(-0.008553555, 0.24621235, -0.05407174, 0.21792875), float4(0.44128785, 0.15875934, 0.010998466, 0.3846571), float4(-0.051262047, 0.26087677, 0.57784307, 0.18719967), float4(0.020236308, 0.52379215, -0.05564443, 0.30163896), float4(0.71370804, 0.21658209, 0.019191828, 0.6642433), float4(-0.067210674, 0.3401835, 0.84825695, 0.24689835), float4(0.007948153, 0.8066414, -0.08580606, 0.3764272), float4(0.98085874, 0.27799374, -0.0131498, 0.9516064), float4(-0.1115874, 0.41002518, 1.1108938, 0.3100251), float4(-0.04768115, 1.087319, -0.14611875, 0.44455653), float4(1.2501811, 0.34455645, -0.0956435, 1.2085621), float4(-0.1894001, 0.48001888, 1.403938, 0.3815878), float4(-0.15293887, 1.3255475, -0.23986568, 0.5123142), float4(1.5619527, 0.41955334, -0.21955688, 1.4378978), float4(-0.29706544, 0.5414322, 1.7246025, 0.4580031), float4(-0.29523104, 1.5453081, -0.36114627, 0.5671063), float4(1.8921922, 0.4970839, -0.37969407, 1.6475452), float4(-0.43204588, 0.5890693, 2.0649552, 0.53673345), float4(-0.47268757, 1.7444439, -0.5097059, 0.6070627), float4(2.2430565, 0.57689345, -0.5739689, 1.8359008), float4(-0.5940731, 0.62084395, 2.4265997, 0.6175107));
 static const float4 vol_input[1] = Constructarray1_float4_(float4(0.0, 0.0, 0.0, 0.0));
 static const uint VOL_CURVES = 1u;
 static const float VOL_SMALLEST = 1.1754944e-38;
@@ -394,17 +363,18 @@ static const uint VOL_IN_MEDIUM_SLOTS = 1u;
 static const uint VOL_IN_LIGHT_SLOTS = 1u;
 static const uint VOL_IN_TRANSFER_SIZE = 256u;
 static const uint VOL_IN_OBJECT_WORDS = 8u;
-static const uint VOL_IN_MEDIUM_WORDS = 8u;
+static const uint VOL_IN_MEDIUM_WORDS = 9u;
 static const uint VOL_IN_CELL_WORDS = 6u;
 static const uint VOL_IN_CELLS_WORDS = 384u;
 static const uint VOL_IN_LIGHT_WORDS = 12u;
 static const uint VOL_IN_PIXEL_WORDS = 15u;
 static const uint VOL_IN_AT_OBJECTS = 27u;
 static const uint VOL_IN_AT_MEDIA = 27u;
-static const uint VOL_IN_AT_LIGHTS = 35u;
-static const uint VOL_IN_AT_CELLS = 75u;
+static const uint VOL_IN_AT_LIGHTS = 36u;
+static const uint VOL_IN_AT_CELLS = 76u;
 static const uint VOL_IN_ROW_WORDS = 0u;
 static const bool VOL_IN_CORRECTED = false;
+static const bool VOL_IN_SPACED = false;
 static const bool VOL_IN_SOFT_LIGHTS = false;
 static const bool VOL_IN_OCCLUDING_LIGHTS = false;
 static const bool VOL_IN_LIGHT_GRIDS = true;
@@ -446,23 +416,9 @@ static const float VOL_IN_LACK = 0.05;
 static const float VOL_IN_BLUR = 0.3;
 static const int VOL_IN_NO_NODE = int(8388608);
 static const float VOL_IN_NO_RUN = 8388608.0;
-static const uint VOL_IN_THE_NODE = 0u;
-static const uint VOL_IN_NO_MORE = 3u;
-static const uint VOL_IN_A_GAP = 1u;
-static const float VOL_IN_LEAST_SHARE = 1e-6;
-static const uint VOL_IN_A_WALL = 2u;
-static const uint VOL_IN_CHORD_ROUNDS = 3u;
-static const uint VOL_IN_WALL_ROUNDS = 5u;
-static const uint VOL_IN_STOP_END = 1u;
-static const uint VOL_IN_START_END = 0u;
 static const float VOL_IN_WEIGHTS[5] = Constructarray5_float_(16.0, 8.0, 4.0, 2.0, 1.0);
 static const uint VOL_IN_WEIGHT_COUNT = 5u;
 static const float VOL_IN_WEIGHT_SUM = 31.0;
-static const uint VOL_IN_PLACES_OF_ENDS = 4u;
-static const uint VOL_IN_NODE_BEFORE = 0u;
-static const uint VOL_IN_NODE_AFTER = 1u;
-static const float VOL_IN_THIN = 0.125;
-static const float VOL_IN_THICK = 0.5;
 static const uint2 VOL_IN_STRIDE = uint2(3242174889u, 2447445414u);
 static const uint VOL_IN_GOLDEN_STRIDE = 2654435769u;
 
@@ -547,9 +503,9 @@ float3 vol_quarter_turn(float x_4)
 {
     float u_1 = (x_4 * VOL_TURNS_PER_RADIAN);
     const float _e3 = vol_round(u_1);
-    float t_38 = (u_1 - _e3);
-    const float _e7 = vol_round((t_38 * 4.0));
-    float r = (t_38 - (_e7 * 0.25));
+    float t_33 = (u_1 - _e3);
+    const float _e7 = vol_round((t_33 * 4.0));
+    float r = (t_33 - (_e7 * 0.25));
     float s = (r * r);
     float a3_1 = (-76.69787 + (s * 41.472946));
     float a2_ = (81.6052 + (s * a3_1));
@@ -638,12 +594,12 @@ Vol_Cell vol_cell_of(float3 p)
     const float _e12 = vol_hold(p.z, -4194303.0, VOL_FIELD);
     float3 held = float3(_e4, _e8, _e12);
     float3 whole = floor(held);
-    float3 place_7 = (held - whole);
-    const float _e17 = vol_fade(place_7.x);
-    const float _e19 = vol_fade(place_7.y);
-    const float _e21 = vol_fade(place_7.z);
-    float3 weights_6 = float3(_e17, _e19, _e21);
-    const Vol_Cell vol_cell = ConstructVol_Cell(naga_f2i32(whole), place_7, weights_6);
+    float3 place_4 = (held - whole);
+    const float _e17 = vol_fade(place_4.x);
+    const float _e19 = vol_fade(place_4.y);
+    const float _e21 = vol_fade(place_4.z);
+    float3 weights_3 = float3(_e17, _e19, _e21);
+    const Vol_Cell vol_cell = ConstructVol_Cell(naga_f2i32(whole), place_4, weights_3);
     return vol_cell;
 }
 
@@ -700,8 +656,8 @@ uint vol_table_cell(int x_10, int y_2, int z_1)
 
 uint vol_mixed(uint joined)
 {
-    uint first_4 = ((joined ^ (joined >> 16u)) * 2146121005u);
-    return ((first_4 ^ (first_4 >> 15u)) * 2221713035u);
+    uint first_2 = ((joined ^ (joined >> 16u)) * 2146121005u);
+    return ((first_2 ^ (first_2 >> 15u)) * 2221713035u);
 }
 
 uint vol_spread(int x_11, int y_3, int z_2, uint seed)
@@ -942,9 +898,9 @@ float4 vol_fbm_gradient(float3 p_5, float octaves_2, float lacunarity_1, float g
             float _e32 = frequency_1;
             float steepness = (_e31 * _e32);
             float _e34 = amplitude_1;
-            float4 weights_7 = float4(_e34, steepness, steepness, steepness);
+            float4 weights_4 = float4(_e34, steepness, steepness, steepness);
             float4 _e36 = sum_1;
-            sum_1 = (_e36 + (weights_7 * _e30));
+            sum_1 = (_e36 + (weights_4 * _e30));
             float _e39 = amplitude_1;
             const float _e40 = vol_next_octave(_e39, gain_1);
             amplitude_1 = _e40;
@@ -1006,10 +962,10 @@ float3 vol_offset_at(float3 p_9, uint word_5, float3 b1_1, float3 b2_1, float t_
 {
     const float3 _e5 = vol_from_point(p_9, word_5);
     const float3 _e6 = vol_reach(_e5, b1_1, b2_1, t_6);
-    float back = (1.0 - t_6);
+    float back_2 = (1.0 - t_6);
     const float3 _e9 = vol_end_from_point(p_9, word_5);
-    float3 before_8 = (_e9 - (back * ((2.0 * (b1_1 + b2_1)) - (back * b2_1))));
-    return ((t_6 > 0.5) ? before_8 : _e6);
+    float3 before_7 = (_e9 - (back_2 * ((2.0 * (b1_1 + b2_1)) - (back_2 * b2_1))));
+    return ((t_6 > 0.5) ? before_7 : _e6);
 }
 
 uint naga_div(uint lhs, uint rhs) {
@@ -1023,16 +979,16 @@ float vol_rough_cube_root(float x_14)
 
 float vol_depressed_step(float u, float gap3_, float m, float k_5)
 {
-    float value_4 = (((((u + gap3_) * u) + m) * u) - k_5);
+    float value_3 = (((((u + gap3_) * u) + m) * u) - k_5);
     float slope_8 = ((((3.0 * u) + (2.0 * gap3_)) * u) + m);
-    return max((u - (value_4 / max(slope_8, VOL_TINY))), 0.0);
+    return max((u - (value_3 / max(slope_8, VOL_TINY))), 0.0);
 }
 
 float vol_polish_step(float t_7, float a3_, float a2x3_, float a1_, float a0_, float low_1)
 {
-    float value_5 = ((((((a3_ * t_7) + a2x3_) * t_7) + a1_) * t_7) + a0_);
+    float value_4 = ((((((a3_ * t_7) + a2x3_) * t_7) + a1_) * t_7) + a0_);
     float slope_9 = (((((3.0 * a3_) * t_7) + (2.0 * a2x3_)) * t_7) + a1_);
-    const float _e25 = vol_hold((t_7 - (value_5 / max(slope_9, VOL_TINY))), low_1, 1.0);
+    const float _e25 = vol_hold((t_7 - (value_4 / max(slope_9, VOL_TINY))), low_1, 1.0);
     return _e25;
 }
 
@@ -1211,15 +1167,15 @@ Vol_CurvePoint vol_describe(float3 p_13, uint word_12, float t_11)
     const float _e55 = vol_dot(_e30, _e17);
     float y_12 = ((_e53 * turn) - _e55);
     const float _e57 = vol_dot(_e30, tangent_1);
-    float ahead_2 = -(_e57);
+    float ahead_4 = -(_e57);
     const bool _e59 = vol_at_first(word_12, t_11);
     const float _e62 = vol_curve_word((word_12 + 37u));
     bool starts = (_e59 & (_e62 == 0.0));
     const bool _e66 = vol_at_last(word_12, t_11);
     const float _e72 = vol_curve_word((word_12 + 38u));
-    bool ends_3 = ((_e66 | (_e23 == 0.0)) & (_e72 == 0.0));
-    float behind_first = (starts ? -(ahead_2) : 0.0);
-    float beyond_last = (ends_3 ? ahead_2 : 0.0);
+    bool ends_2 = ((_e66 | (_e23 == 0.0)) & (_e72 == 0.0));
+    float behind_first = (starts ? -(ahead_4) : 0.0);
+    float beyond_last = (ends_2 ? ahead_4 : 0.0);
     const float3 _e81 = vol_cross(_e20, v_6);
     const float _e82 = vol_dot(_e30, _e81);
     float bent_1 = (_e82 / vv);
@@ -1264,11 +1220,11 @@ Vol_CurveSlopes vol_slopes(float3 p_14, uint word_13, float t_12)
     float per_speed_1 = (_e33 / speed_1);
     float3 tangent_2 = (is_straight_1 ? _e11 : (v_7 * per_speed_1));
     const float _e37 = vol_dot(_e19, _e19);
-    float distance_11 = sqrt(_e37);
-    float per_distance = ((distance_11 > 0.0) ? (-1.0 / max(distance_11, VOL_TINY)) : 0.0);
+    float distance_10 = sqrt(_e37);
+    float per_distance = ((distance_10 > 0.0) ? (-1.0 / max(distance_10, VOL_TINY)) : 0.0);
     bool at_end = ((t_12 == 0.0) | (t_12 == 1.0));
     const float _e52 = vol_dot(_e19, tangent_2);
-    bool held_1 = (at_end & (abs(_e52) > (VOL_LEAN * distance_11)));
+    bool held_1 = (at_end & (abs(_e52) > (VOL_LEAN * distance_10)));
     const float3 _e58 = vol_cross(_e14, v_7);
     const float _e59 = vol_dot(_e19, _e58);
     float bent_2 = (_e59 / vv_1);
@@ -1303,15 +1259,15 @@ Vol_Search vol_search(float3 p_16, Vol_Curve curve)
     Vol_Search search = ConstructVol_Search(3.4028235e38, 0.0, 0u, false);
     uint index_6 = 0u;
 
-    Vol_LastSearch last_5 = vol_last_search[min(uint(curve.number), 0u)];
-    if ((last_5.some & all((last_5.point_ == p_16)))) {
-        const Vol_Search vol_search_2 = last_5.found;
+    Vol_LastSearch last_4 = vol_last_search[min(uint(curve.number), 0u)];
+    if ((last_4.some & all((last_4.point_ == p_16)))) {
+        const Vol_Search vol_search_2 = last_4.found;
         return vol_search_2;
     }
-    float3 way = (p_16 - last_5.point_);
+    float3 way = (p_16 - last_4.point_);
     const float _e15 = vol_dot(way, way);
-    float reach_1 = (last_5.reach + sqrt(_e15));
-    float bound = (last_5.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
+    float reach_1 = (last_4.reach + sqrt(_e15));
+    float bound = (last_4.some ? ((reach_1 * reach_1) * VOL_LOOSE) : VOL_LARGEST);
     uint2 loop_bound_2 = uint2(4294967295u, 4294967295u);
     bool loop_init_2 = true;
     while(true) {
@@ -1789,10 +1745,10 @@ float3 vol_in_decay_moment3_(float3 x_20)
 
 float vol_in_power(float x_21, float y_6)
 {
-    bool some = (x_21 > 0.0);
-    const float _e6 = vol_log2_((some ? x_21 : 1.0));
+    bool some_1 = (x_21 > 0.0);
+    const float _e6 = vol_log2_((some_1 ? x_21 : 1.0));
     const float _e8 = vol_exp2_((y_6 * _e6));
-    return (some ? _e8 : 0.0);
+    return (some_1 ? _e8 : 0.0);
 }
 
 bool vol_in_is_within(Vol_in_Mean mean, float tolerance)
@@ -1991,11 +1947,11 @@ Vol_in_Span vol_in_slab(Vol_in_Ray ray, float3 lo_2, float3 hi_2)
             uint _e34 = axis_1;
             bool beside = ((o < lo_2[min(uint(_e31), 2u)]) | (o > hi_2[min(uint(_e34), 2u)]));
             float near_6 = (parallel ? (beside ? VOL_IN_FAR : 0.0) : min(a_8, b_7));
-            float end_18 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
+            float end_10 = (parallel ? (beside ? -4000000.0 : VOL_IN_FAR) : max(a_8, b_7));
             float _e50 = span_1.entry;
             span_1.entry = max(_e50, near_6);
             float _e54 = span_1.leave;
-            span_1.leave = min(_e54, end_18);
+            span_1.leave = min(_e54, end_10);
         }
     }
     Vol_in_Span _e59 = span_1;
@@ -2165,15 +2121,15 @@ Vol_in_Near vol_in_nearest(Vol_in_Ray ray_5, inout Vol_in_Span spans_1[1], inout
             }
             uint _e34 = solid_6;
             Vol_in_Span span_2 = spans_1[min(uint(_e34), 0u)];
-            bool some_1 = (span_2.entry <= span_2.leave);
-            bool ahead_3 = (some_1 & (t_16 < span_2.entry));
+            bool some_2 = (span_2.entry <= span_2.leave);
+            bool ahead_5 = (some_2 & (t_16 < span_2.entry));
             float _e45 = near.gap;
             float _e47 = near.gap;
-            near.gap = (ahead_3 ? min(_e47, (span_2.entry - t_16)) : _e45);
+            near.gap = (ahead_5 ? min(_e47, (span_2.entry - t_16)) : _e45);
             float _e54 = near.entry;
             float _e56 = near.entry;
-            near.entry = (ahead_3 ? min(_e56, span_2.entry) : _e54);
-            if (((some_1 & (t_16 >= span_2.entry)) & (t_16 <= span_2.leave))) {
+            near.entry = (ahead_5 ? min(_e56, span_2.entry) : _e54);
+            if (((some_2 & (t_16 >= span_2.entry)) & (t_16 <= span_2.leave))) {
                 float _e68 = near.rest;
                 near.rest = max(_e68, (span_2.leave - t_16));
                 uint _e72 = solid_6;
@@ -2264,16 +2220,16 @@ float vol_in_advance(Vol_in_Near near_2, uint step_1, float least)
 Vol_in_Walker vol_in_onward(Vol_in_Near near_3, Vol_in_Walker walker_2, uint step_2, float least_1)
 {
     const float _e4 = vol_in_advance(near_3, step_2, least_1);
-    float last_6 = (walker_2.t - walker_2.before);
-    bool is_first = (last_6 <= 0.0);
-    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_6)), 0.0);
+    float last_5 = (walker_2.t - walker_2.before);
+    bool is_first = (last_5 <= 0.0);
+    float fall = max(((walker_2.free - near_3.distance_) / (is_first ? 1.0 : last_5)), 0.0);
     float touching = ((VOL_IN_EAGERNESS * near_3.distance_) / (1.0 + fall));
     float guess = min(min(touching, (VOL_IN_ROOM * near_3.gap)), (VOL_IN_ROOM * (near_3.leave - walker_2.t)));
-    float place_8 = (walker_2.t + guess);
-    bool is_inside = ((place_8 < near_3.entry) & (place_8 <= near_3.leave));
+    float place_5 = (walker_2.t + guess);
+    bool is_inside = ((place_5 < near_3.entry) & (place_5 <= near_3.leave));
     const bool _e45 = vol_in_is_stuck(step_2);
     bool guessed = ((((guess > _e4) & is_inside) & !(is_first)) & !(_e45));
-    const Vol_in_Walker vol_in_walker_1 = ConstructVol_in_Walker((guessed ? place_8 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
+    const Vol_in_Walker vol_in_walker_1 = ConstructVol_in_Walker((guessed ? place_5 : (walker_2.t + _e4)), walker_2.t, _e4, guessed);
     return vol_in_walker_1;
 }
 
@@ -2290,8 +2246,8 @@ float vol_in_probe(Vol_in_Bracket bracket)
     bool is_proper = ((bracket.outside.y >= 0.0) & (bracket.inside.y < 0.0));
     float fall_1 = (is_proper ? (bracket.outside.y - bracket.inside.y) : 1.0);
     float part_3 = (bracket.outside.y / fall_1);
-    float between_4 = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
-    return (is_proper ? between_4 : bracket.inside.x);
+    float between = (bracket.outside.x + ((bracket.inside.x - bracket.outside.x) * part_3));
+    return (is_proper ? between : bracket.inside.x);
 }
 
 Vol_in_Bracket ConstructVol_in_Bracket(float2 arg0, float2 arg1) {
@@ -2405,20 +2361,20 @@ Vol_in_Contact vol_in_refine(Vol_in_Ray ray_8, uint solid_9, float before_2, flo
             const float _e17 = vol_in_probe(_e16);
             uint _e18 = round_1;
             uint _e22 = round_1;
-            float place_9 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
-            const float3 _e26 = vol_in_ray_at(ray_8, place_9);
+            float place_6 = ((_e22 == 0u) ? before_2 : ((_e18 == 1u) ? t_22 : _e17));
+            const float3 _e26 = vol_in_ray_at(ray_8, place_6);
             const float _e27 = vol_in_object_distance(solid_9, _e26);
-            float2 found_3 = float2(place_9, (side_1 * _e27));
+            float2 found_1 = float2(place_6, (side_1 * _e27));
             uint _e30 = round_1;
             if ((_e30 == 0u)) {
-                bracket_2.outside = found_3;
+                bracket_2.outside = found_1;
             } else {
                 uint _e34 = round_1;
                 if ((_e34 == 1u)) {
-                    bracket_2.inside = found_3;
+                    bracket_2.inside = found_1;
                 } else {
                     Vol_in_Bracket _e38 = bracket_2;
-                    const Vol_in_Bracket _e39 = vol_in_narrow(_e38, found_3);
+                    const Vol_in_Bracket _e39 = vol_in_narrow(_e38, found_1);
                     bracket_2 = _e39;
                 }
             }
@@ -2533,21 +2489,21 @@ Vol_in_Arriving vol_in_arriving(uint light, float3 point_3)
     float3 toward_2 = (_e11 - point_3);
     const float _e13 = vol_in_dot3_(toward_2, toward_2);
     float squared = max(_e13, 1e-12);
-    float distance_12 = sqrt(squared);
+    float distance_11 = sqrt(squared);
     const float3 _e21 = vol_in_word3_((at_2 + 1u));
-    float3 direction_5 = (distant ? _e21 : (toward_2 / (distance_12).xxx));
+    float3 direction_5 = (distant ? _e21 : (toward_2 / (distance_11).xxx));
     const float3 _e25 = vol_in_word3_((at_2 + 4u));
     const float3 _e30 = vol_in_word3_((at_2 + 4u));
     float3 irradiance = (distant ? _e30 : (_e25 / (squared).xxx));
     const float _e34 = vol_frame_word((at_2 + 7u));
     bool shadows = (_e34 != 0.0);
     const float _e39 = vol_frame_word((at_2 + 8u));
-    float slope_11 = (distant ? _e39 : min((_e39 / distance_12), VOL_IN_MAX_SPREAD_TANGENT));
+    float slope_11 = (distant ? _e39 : min((_e39 / distance_11), VOL_IN_MAX_SPREAD_TANGENT));
     const float _e46 = vol_frame_word((at_2 + 10u));
     uint grid_4 = naga_f2u32(_e46);
     const float _e50 = vol_frame_word((at_2 + 11u));
     uint style = naga_f2u32(_e50);
-    const Vol_in_Arriving vol_in_arriving_1 = ConstructVol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_12), irradiance, shadows, slope_11, grid_4, style);
+    const Vol_in_Arriving vol_in_arriving_1 = ConstructVol_in_Arriving(direction_5, (distant ? VOL_IN_FAR : distance_11), irradiance, shadows, slope_11, grid_4, style);
     return vol_in_arriving_1;
 }
 
@@ -2664,12 +2620,12 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
         {
             uint _e13 = solid_12;
             Vol_in_Span span_3 = spans_4[min(uint(_e13), 0u)];
-            bool some_2 = (span_3.entry <= span_3.leave);
-            bool before_9 = (some_2 & (t_24 < span_3.entry));
+            bool some_3 = (span_3.entry <= span_3.leave);
+            bool before_8 = (some_3 & (t_24 < span_3.entry));
             float _e24 = near_4.gap;
             float _e26 = near_4.gap;
-            near_4.gap = (before_9 ? min(_e26, (span_3.entry - t_24)) : _e24);
-            if (((some_2 & (t_24 >= span_3.entry)) & (t_24 <= span_3.leave))) {
+            near_4.gap = (before_8 ? min(_e26, (span_3.entry - t_24)) : _e24);
+            if (((some_3 & (t_24 >= span_3.entry)) & (t_24 <= span_3.leave))) {
                 uint _e37 = solid_12;
                 const float3 _e38 = vol_in_ray_at(ray_12, t_24);
                 const float _e39 = vol_in_object_distance(_e37, _e38);
@@ -2693,8 +2649,8 @@ Vol_in_Around vol_in_around(Vol_in_Ray ray_12, inout Vol_in_Span spans_4[1], flo
 
 bool vol_in_enters(float distance_1, float t_25, float least_2)
 {
-    float start_2 = ((8.0 * least_2) - t_25);
-    return (distance_1 < -(max(start_2, 0.0)));
+    float start = ((8.0 * least_2) - t_25);
+    return (distance_1 < -(max(start, 0.0)));
 }
 
 float vol_in_least(float2 a_6, float2 b_6, float2 c_3)
@@ -2710,9 +2666,9 @@ float vol_in_least(float2 a_6, float2 b_6, float2 c_3)
     if ((bend <= 0.0)) {
         return b_6.y;
     }
-    float place_10 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
-    float value_6 = (a_6.y + ((place_10 - a_6.x) * (fall_2 + (bend * (place_10 - b_6.x)))));
-    return min(max(value_6, (0.75 * b_6.y)), b_6.y);
+    float place_7 = ((0.5 * (a_6.x + b_6.x)) - (0.5 * (fall_2 / bend)));
+    float value_5 = (a_6.y + ((place_7 - a_6.x) * (fall_2 + (bend * (place_7 - b_6.x)))));
+    return min(max(value_5, (0.75 * b_6.y)), b_6.y);
 }
 
 float vol_in_cone_step(Vol_in_Around near_5, float least_step, float slope_2, float t_26)
@@ -2742,7 +2698,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
     const float _e6 = vol_in_squared_sine((VOL_IN_CLEAR * slope_4));
     lowest_1 = _e6;
     vol_in_cone_spans(ray_13, distance_2, slope_4, spans_5);
-    float end_19 = min(distance_2, VOL_IN_FAR);
+    float end_11 = min(distance_2, VOL_IN_FAR);
     uint2 loop_bound_14 = uint2(4294967295u, 4294967295u);
     bool loop_init_14 = true;
     while(true) {
@@ -2769,7 +2725,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             }
             float _e30 = t_27;
             float _e38 = t_27;
-            bool counts = (((_e30 > 0.0) & (_e25.distance_ >= 0.0)) & (_e25.distance_ < (end_19 - _e38)));
+            bool counts = (((_e30 > 0.0) & (_e25.distance_ >= 0.0)) & (_e25.distance_ < (end_11 - _e38)));
             float _e42 = t_27;
             float divisor_2 = (counts ? _e42 : 1.0);
             float sine_1 = min((_e25.distance_ / divisor_2), 1.0);
@@ -2777,10 +2733,10 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             float2 _e54 = older;
             float2 _e55 = newer;
             const float _e56 = vol_in_least(_e54, _e55, sample_1);
-            float found_4 = min(sample_1.y, _e56);
+            float found_2 = min(sample_1.y, _e56);
             float _e58 = lowest_1;
             float _e59 = lowest_1;
-            lowest_1 = (counts ? min(_e59, found_4) : _e58);
+            lowest_1 = (counts ? min(_e59, found_2) : _e58);
             float2 _e64 = newer;
             older = (counts ? _e64 : (0.0).xx);
             newer = (counts ? sample_1 : (0.0).xx);
@@ -2789,7 +2745,7 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
             const float _e71 = vol_in_cone_step(_e25, least_step_1, slope_4, _e70);
             t_27 = (_e69 + _e71);
             float _e73 = t_27;
-            if ((_e73 >= end_19)) {
+            if ((_e73 >= end_11)) {
                 break;
             }
         }
@@ -2802,8 +2758,8 @@ float vol_in_walk(Vol_in_Ray ray_13, float distance_2, float least_step_1, float
 float vol_in_clear_depth(float clear, float2 end_1, float2 place)
 {
     float2 aside_1 = (place - end_1);
-    float distance_13 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
-    return ((clear > 0.0) ? (clear - distance_13) : -2.0);
+    float distance_12 = sqrt(((aside_1.x * aside_1.x) + (aside_1.y * aside_1.y)));
+    return ((clear > 0.0) ? (clear - distance_12) : -2.0);
 }
 
 float vol_in_lit_part(float centre, inout float clear_1[8])
@@ -2927,11 +2883,11 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
         }
         {
             uint _e14 = index_16;
-            uint end_20 = (max(_e14, 1u) - 1u);
+            uint end_12 = (max(_e14, 1u) - 1u);
             toward = ray_14;
             uint _e20 = index_16;
             if ((_e20 > 0u)) {
-                float2 _e24 = ends_1[min(uint(end_20), 7u)];
+                float2 _e24 = ends_1[min(uint(end_12), 7u)];
                 const Vol_in_Ray _e25 = vol_in_rim(ray_14, slope_5, _e24);
                 toward = _e25;
             }
@@ -2939,7 +2895,7 @@ float vol_in_lit_part_of(Vol_in_Ray ray_14, float distance_3, float least_step_2
             const float _e27 = vol_in_walk(_e26, distance_3, least_step_2, slope_5);
             uint _e28 = index_16;
             if ((_e28 > 0u)) {
-                clear_2[min(uint(end_20), 7u)] = _e27;
+                clear_2[min(uint(end_12), 7u)] = _e27;
             } else {
                 if ((_e27 >= 1.0)) {
                     return 1.0;
@@ -2991,7 +2947,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3)
 
     vol_in_no_sides(sides_5);
     vol_in_object_spans(ray_15, sides_5, spans_6);
-    float end_21 = min(distance_4, VOL_IN_FAR);
+    float end_13 = min(distance_4, VOL_IN_FAR);
     uint2 loop_bound_20 = uint2(4294967295u, 4294967295u);
     bool loop_init_20 = true;
     while(true) {
@@ -3028,7 +2984,7 @@ bool vol_in_blocked(Vol_in_Ray ray_15, float distance_4, float least_3)
             walker_4 = _e35;
             bool _e36 = inside_1;
             float _e38 = walker_4.t;
-            if ((_e36 | (_e38 >= end_21))) {
+            if ((_e36 | (_e38 >= end_13))) {
                 break;
             }
         }
@@ -3053,13 +3009,13 @@ Vol_in_Stencil ConstructVol_in_Stencil(int4 arg0, float4 arg1) {
 Vol_in_Stencil vol_in_stencil(float place_1, float last_2, bool spline)
 {
     float index_22 = min(floor(place_1), (last_2 - 1.0));
-    float t_39 = (place_1 - index_22);
-    float4 local_12 = float4(((((1.0 - (0.5 * t_39)) * t_39) - 0.5) * t_39), (((((1.5 * t_39) - 2.5) * t_39) * t_39) + 1.0), ((((2.0 - (1.5 * t_39)) * t_39) + 0.5) * t_39), ((((0.5 * t_39) - 0.5) * t_39) * t_39));
-    float back_1 = (1.0 - t_39);
-    float4 through = float4((0.16666667 * (back_1 * (back_1 * back_1))), (0.6666667 - ((t_39 * t_39) * (1.0 - (0.5 * t_39)))), (0.6666667 - ((back_1 * back_1) * (1.0 - (0.5 * back_1)))), (0.16666667 * (t_39 * (t_39 * t_39))));
-    float4 weights_8 = (spline ? through : local_12);
+    float t_34 = (place_1 - index_22);
+    float4 local_14 = float4(((((1.0 - (0.5 * t_34)) * t_34) - 0.5) * t_34), (((((1.5 * t_34) - 2.5) * t_34) * t_34) + 1.0), ((((2.0 - (1.5 * t_34)) * t_34) + 0.5) * t_34), ((((0.5 * t_34) - 0.5) * t_34) * t_34));
+    float back_3 = (1.0 - t_34);
+    float4 through = float4((0.16666667 * (back_3 * (back_3 * back_3))), (0.6666667 - ((t_34 * t_34) * (1.0 - (0.5 * t_34)))), (0.6666667 - ((back_3 * back_3) * (1.0 - (0.5 * back_3)))), (0.16666667 * (t_34 * (t_34 * t_34))));
+    float4 weights_5 = (spline ? through : local_14);
     int4 around = asint(asuint((naga_f2i32(index_22)).xxxx) + asuint(int4(int(-1), int(0), int(1), int(2))));
-    const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx), weights_8);
+    const Vol_in_Stencil vol_in_stencil_1 = ConstructVol_in_Stencil(clamp(around, (int(0)).xxxx, (naga_f2i32(last_2)).xxxx), weights_5);
     return vol_in_stencil_1;
 }
 
@@ -3149,25 +3105,25 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     const float _e25 = vol_in_dot3_(off, _e24);
     const float3 _e28 = vol_in_word3_((grid + 10u));
     const float _e29 = vol_in_dot3_(off, _e28);
-    bool ahead_4 = (distant_1 | (_e29 > (0.5 * _e7.z)));
-    float divisor_3 = ((ahead_4 & !(distant_1)) ? _e29 : 1.0);
+    bool ahead_6 = (distant_1 | (_e29 > (0.5 * _e7.z)));
+    float divisor_3 = ((ahead_6 & !(distant_1)) ? _e29 : 1.0);
     const float _e41 = vol_in_length3_(off);
     float3 seen_4 = float3((_e21 / divisor_3), (_e25 / divisor_3), (distant_1 ? _e29 : _e41));
-    float3 last_7 = (_e13 - (1.0).xxx);
-    float3 place_11 = ((seen_4 - _e7) * _e10);
-    bool beside_1 = ((((place_11.x < 0.0) | (place_11.x > last_7.x)) | (place_11.y < 0.0)) | (place_11.y > last_7.y));
-    if (((!(ahead_4) | beside_1) | (place_11.z <= 0.0))) {
+    float3 last_6 = (_e13 - (1.0).xxx);
+    float3 place_8 = ((seen_4 - _e7) * _e10);
+    bool beside_1 = ((((place_8.x < 0.0) | (place_8.x > last_6.x)) | (place_8.y < 0.0)) | (place_8.y > last_6.y));
+    if (((!(ahead_6) | beside_1) | (place_8.z <= 0.0))) {
         return (0.0).xxx;
     }
     const float _e74 = vol_frame_word((grid + 25u));
     uint channels_1 = naga_f2u32(_e74);
     const float _e78 = vol_frame_word((grid + 27u));
     bool spline_1 = (_e78 != 0.0);
-    const Vol_in_Stencil _e83 = vol_in_stencil(place_11.x, last_7.x, spline_1);
-    const Vol_in_Stencil _e86 = vol_in_stencil(place_11.y, last_7.y, spline_1);
-    const Vol_in_Stencil _e91 = vol_in_stencil(min(place_11.z, last_7.z), last_7.z, spline_1);
+    const Vol_in_Stencil _e83 = vol_in_stencil(place_8.x, last_6.x, spline_1);
+    const Vol_in_Stencil _e86 = vol_in_stencil(place_8.y, last_6.y, spline_1);
+    const Vol_in_Stencil _e91 = vol_in_stencil(min(place_8.z, last_6.z), last_6.z, spline_1);
     const float _e94 = vol_frame_word((grid + 26u));
-    uint first_5 = naga_f2u32(_e94);
+    uint first_3 = naga_f2u32(_e94);
     const float3 _e98 = vol_in_word3_((grid + 22u));
     uint2 loop_bound_23 = uint2(4294967295u, 4294967295u);
     bool loop_init_23 = true;
@@ -3187,7 +3143,7 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
         {
             uint _e106 = channel_1;
             uint _e110 = channel_1;
-            const float _e111 = vol_in_grid_channel(first_5, _e83, _e86, _e91, naga_f2i32(_e13.y), _e110, channels_1);
+            const float _e111 = vol_in_grid_channel(first_3, _e83, _e86, _e91, naga_f2i32(_e13.y), _e110, channels_1);
             depth[min(uint(_e106), 2u)] = _e111;
         }
     }
@@ -3196,9 +3152,11 @@ float3 vol_in_grid_depth(uint grid, float3 point_4)
     return (_e98 * ((channels_1 == 1u) ? (_e117).xxx : _e115));
 }
 
-float vol_in_first_node(float shift)
+float vol_in_first_node(float shift, int block)
 {
-    return (VOL_IN_CORRECTED ? ((shift > 0.0) ? (shift - 1.0) : shift) : (0.5 + shift));
+    float moved = floor((float(block) * (0.5 + shift)));
+    float middle = ((0.5 + shift) - (float(asint(asuint(block) - asuint(int(1)))) - moved));
+    return (VOL_IN_CORRECTED ? ((shift > 0.0) ? (shift - 1.0) : shift) : middle);
 }
 
 uint vol_in_medium_word(uint medium)
@@ -3206,18 +3164,37 @@ uint vol_in_medium_word(uint medium)
     return (VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium));
 }
 
-int2 vol_in_node_range(Vol_in_Ray ray_17, float3 lo_3, float3 hi_3, inout Vol_in_Comb comb)
+int vol_in_spacing_of(inout Vol_in_Comb comb, uint medium_1)
 {
-    float step_size_4 = comb.step_;
-    float3 reach_2 = ((1.01 * step_size_4)).xxx;
-    const Vol_in_Span _e11 = vol_in_slab(ray_17, (lo_3 - reach_2), (hi_3 + reach_2));
-    float _e14 = comb.end;
-    float leave_1 = min(_e11.leave, _e14);
-    float _e19 = comb.offset;
-    float first_6 = min(max(floor(((_e11.entry / step_size_4) - _e19)), 0.0), VOL_IN_LAST_NODE);
-    float _e30 = comb.offset;
-    float last_8 = min(floor(((max(leave_1, 0.0) / step_size_4) - _e30)), VOL_IN_LAST_NODE);
-    return ((_e11.entry > leave_1) ? int2(int(0), int(-1)) : int2(naga_f2i32(first_6), naga_f2i32(last_8)));
+    bool local_4 = (bool)0;
+
+    if (VOL_IN_SPACED) {
+        int _e6 = comb.block;
+        local_4 = (_e6 > int(1));
+    } else {
+        local_4 = false;
+    }
+    bool _e10 = local_4;
+    if (_e10) {
+        const uint _e11 = vol_in_medium_word(medium_1);
+        const float _e14 = vol_frame_word((_e11 + 8u));
+        return naga_f2i32(_e14);
+    }
+    return int(1);
+}
+
+int2 vol_in_node_range(Vol_in_Ray ray_17, float3 lo_3, float3 hi_3, int spacing, inout Vol_in_Comb comb_1)
+{
+    float step_size_2 = comb_1.step_;
+    float3 reach_2 = (((1.01 * float(spacing)) * step_size_2)).xxx;
+    const Vol_in_Span _e14 = vol_in_slab(ray_17, (lo_3 - reach_2), (hi_3 + reach_2));
+    float _e17 = comb_1.end;
+    float leave_1 = min(_e14.leave, _e17);
+    float _e22 = comb_1.offset;
+    float first_4 = min(max(floor(((_e14.entry / step_size_2) - _e22)), 0.0), VOL_IN_LAST_NODE);
+    float _e33 = comb_1.offset;
+    float last_7 = min(floor(((max(leave_1, 0.0) / step_size_2) - _e33)), VOL_IN_LAST_NODE);
+    return ((_e14.entry > leave_1) ? int2(int(0), int(-1)) : int2(naga_f2i32(first_4), naga_f2i32(last_7)));
 }
 
 Vol_in_Runs ConstructVol_in_Runs(float4 arg0, float4 arg1) {
@@ -3233,686 +3210,502 @@ Vol_in_Runs vol_in_add_run(Vol_in_Runs before_3, int2 nodes)
     bool4 continued = ((before_3.first <= ((range.y + 2.0)).xxxx) & (before_3.last >= ((range.x - 2.0)).xxxx));
     float4 own_first = (continued ? before_3.first : (8388608.0).xxxx);
     float4 own_last = (continued ? before_3.last : (-1.0).xxxx);
-    float first_7 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
-    float last_9 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
+    float first_5 = min(range.x, min(min(own_first.x, own_first.y), min(own_first.z, own_first.w)));
+    float last_8 = max(range.y, max(max(own_last.x, own_last.y), max(own_last.z, own_last.w)));
     float4 kept_first = (continued ? (8388608.0).xxxx : before_3.first);
     float4 kept_last = (continued ? (-1.0).xxxx : before_3.last);
     bool4 free_2 = (kept_first == (8388608.0).xxxx);
-    bool4 place_12 = bool4(free_2.x, (free_2.y & !(free_2.x)), (free_2.z & !((free_2.x | free_2.y))), !(((free_2.x | free_2.y) | free_2.z)));
-    const Vol_in_Runs vol_in_runs = ConstructVol_in_Runs((place_12 ? min(kept_first, (first_7).xxxx) : kept_first), (place_12 ? max(kept_last, (last_9).xxxx) : kept_last));
+    bool4 place_9 = bool4(free_2.x, (free_2.y & !(free_2.x)), (free_2.z & !((free_2.x | free_2.y))), !(((free_2.x | free_2.y) | free_2.z)));
+    const Vol_in_Runs vol_in_runs = ConstructVol_in_Runs((place_9 ? min(kept_first, (first_5).xxxx) : kept_first), (place_9 ? max(kept_last, (last_8).xxxx) : kept_last));
     return vol_in_runs;
 }
 
-Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_1, inout Vol_in_Comb comb_1)
+Vol_in_Runs vol_in_find_runs(Vol_in_Ray ray_18, uint medium_2, inout Vol_in_Comb comb_2)
 {
     Vol_in_Runs runs = ConstructVol_in_Runs((8388608.0).xxxx, (-1.0).xxxx);
     uint cell = (uint)0;
     uint index_17 = 0u;
 
-    const uint _e3 = vol_in_medium_word(medium_1);
-    const float3 _e12 = vol_in_word3_((_e3 + 1u));
-    const float3 _e15 = vol_in_word3_((_e3 + 4u));
-    const int2 _e16 = vol_in_node_range(ray_18, _e12, _e15, comb_1);
-    const float _e20 = vol_frame_word(_e3);
-    if (((_e16.x > _e16.y) | (_e20 == 0.0))) {
-        Vol_in_Runs _e24 = runs;
-        const Vol_in_Runs vol_in_runs_1 = _e24;
+    const uint _e3 = vol_in_medium_word(medium_2);
+    const int _e4 = vol_in_spacing_of(comb_2, medium_2);
+    const float3 _e13 = vol_in_word3_((_e3 + 1u));
+    const float3 _e16 = vol_in_word3_((_e3 + 4u));
+    const int2 _e17 = vol_in_node_range(ray_18, _e13, _e16, _e4, comb_2);
+    const float _e21 = vol_frame_word(_e3);
+    if (((_e17.x > _e17.y) | (_e21 == 0.0))) {
+        Vol_in_Runs _e25 = runs;
+        const Vol_in_Runs vol_in_runs_1 = _e25;
         return vol_in_runs_1;
     }
-    const float _e27 = vol_frame_word((_e3 + 7u));
-    uint count_5 = naga_f2u32(_e27);
+    const float _e28 = vol_frame_word((_e3 + 7u));
+    uint count_5 = naga_f2u32(_e28);
     if ((count_5 == 0u)) {
-        Vol_in_Runs _e31 = runs;
-        const Vol_in_Runs _e32 = vol_in_add_run(_e31, _e16);
-        const Vol_in_Runs vol_in_runs_2 = _e32;
+        Vol_in_Runs _e32 = runs;
+        const Vol_in_Runs _e33 = vol_in_add_run(_e32, _e17);
+        const Vol_in_Runs vol_in_runs_2 = _e33;
         return vol_in_runs_2;
     }
-    cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_1));
+    cell = (VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium_2));
     uint2 loop_bound_24 = uint2(4294967295u, 4294967295u);
     bool loop_init_24 = true;
     while(true) {
         if (all(loop_bound_24 == uint2(0u, 0u))) { break; }
         loop_bound_24 -= uint2(loop_bound_24.y == 0u, 1u);
         if (!loop_init_24) {
-            uint _e58 = index_17;
-            index_17 = (_e58 + 1u);
+            uint _e59 = index_17;
+            index_17 = (_e59 + 1u);
         }
         loop_init_24 = false;
-        uint _e40 = index_17;
-        if ((_e40 < count_5)) {
+        uint _e41 = index_17;
+        if ((_e41 < count_5)) {
         } else {
             break;
         }
         {
-            uint _e42 = cell;
-            const float3 _e43 = vol_in_word3_(_e42);
-            uint _e44 = cell;
-            const float3 _e47 = vol_in_word3_((_e44 + 3u));
-            const int2 _e48 = vol_in_node_range(ray_18, _e43, _e47, comb_1);
-            if ((_e48.x <= _e48.y)) {
-                Vol_in_Runs _e52 = runs;
-                const Vol_in_Runs _e53 = vol_in_add_run(_e52, _e48);
-                runs = _e53;
+            uint _e43 = cell;
+            const float3 _e44 = vol_in_word3_(_e43);
+            uint _e45 = cell;
+            const float3 _e48 = vol_in_word3_((_e45 + 3u));
+            const int2 _e49 = vol_in_node_range(ray_18, _e44, _e48, _e4, comb_2);
+            if ((_e49.x <= _e49.y)) {
+                Vol_in_Runs _e53 = runs;
+                const Vol_in_Runs _e54 = vol_in_add_run(_e53, _e49);
+                runs = _e54;
             }
-            uint _e54 = cell;
-            cell = (_e54 + VOL_IN_CELL_WORDS);
+            uint _e55 = cell;
+            cell = (_e55 + VOL_IN_CELL_WORDS);
         }
     }
-    Vol_in_Runs _e60 = runs;
-    const Vol_in_Runs vol_in_runs_3 = _e60;
+    Vol_in_Runs _e61 = runs;
+    const Vol_in_Runs vol_in_runs_3 = _e61;
     return vol_in_runs_3;
 }
 
 int2 vol_in_run_from(Vol_in_Runs runs_1, int node)
 {
-    float earliest = float(node);
-    float4 first_8 = ((runs_1.last >= (earliest).xxxx) ? max(runs_1.first, (earliest).xxxx) : (8388608.0).xxxx);
-    float least_4 = min(min(first_8.x, first_8.y), min(first_8.z, first_8.w));
-    float4 last_10 = ((first_8 == (least_4).xxxx) ? runs_1.last : (earliest).xxxx);
-    int end_22 = naga_f2i32(max(max(last_10.x, last_10.y), max(last_10.z, last_10.w)));
-    return int2(naga_f2i32(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_22));
+    float earliest_1 = float(node);
+    float4 first_6 = ((runs_1.last >= (earliest_1).xxxx) ? max(runs_1.first, (earliest_1).xxxx) : (8388608.0).xxxx);
+    float least_4 = min(min(first_6.x, first_6.y), min(first_6.z, first_6.w));
+    float4 last_9 = ((first_6 == (least_4).xxxx) ? runs_1.last : (earliest_1).xxxx);
+    int end_14 = naga_f2i32(max(max(last_9.x, last_9.y), max(last_9.z, last_9.w)));
+    return int2(naga_f2i32(least_4), ((least_4 == VOL_IN_NO_RUN) ? VOL_IN_NO_NODE : end_14));
 }
 
-Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size)
+Vol_in_Comb vol_in_new_comb(Vol_in_Ray ray_19, float end_4, float step_size, int block_1)
 {
-    Vol_in_Comb comb_2 = (Vol_in_Comb)0;
+    Vol_in_Comb comb_3 = (Vol_in_Comb)0;
 
-    comb_2.step_ = step_size;
-    const float _e7 = vol_in_first_node(ray_19.shift);
-    comb_2.offset = _e7;
-    comb_2.end = end_4;
-    comb_2.first = VOL_IN_NO_NODE;
-    comb_2.last = int(-1);
+    comb_3.step_ = step_size;
+    comb_3.block = block_1;
+    const float _e9 = vol_in_first_node(ray_19.shift, block_1);
+    comb_3.offset = _e9;
+    comb_3.end = end_4;
+    comb_3.first = VOL_IN_NO_NODE;
+    comb_3.last = int(-1);
     {
-        const Vol_in_Runs _e14 = vol_in_find_runs(ray_19, 0u, comb_2);
-        comb_2.all_[0u] = _e14;
-        const int2 _e20 = vol_in_run_from(_e14, int(0));
-        comb_2.runs[0u] = _e20;
-        int _e23 = comb_2.first;
-        int _e27 = comb_2.runs[0u].x;
-        comb_2.first = min(_e23, _e27);
-        int _e31 = comb_2.last;
-        comb_2.last = max(_e31, naga_f2i32(max(max(_e14.last.x, _e14.last.y), max(_e14.last.z, _e14.last.w))));
-        comb_2.before[0u] = VOL_IN_FAR;
-        comb_2.own[0u] = VOL_IN_FAR;
+        const Vol_in_Runs _e16 = vol_in_find_runs(ray_19, 0u, comb_3);
+        comb_3.all_[0u] = _e16;
+        const int2 _e22 = vol_in_run_from(_e16, int(0));
+        comb_3.runs[0u] = _e22;
+        int _e25 = comb_3.first;
+        int _e29 = comb_3.runs[0u].x;
+        comb_3.first = min(_e25, _e29);
+        int _e33 = comb_3.last;
+        comb_3.last = max(_e33, naga_f2i32(max(max(_e16.last.x, _e16.last.y), max(_e16.last.z, _e16.last.w))));
+        comb_3.before[0u] = VOL_IN_FAR;
+        comb_3.own[0u] = VOL_IN_FAR;
     }
-    int _e53 = comb_2.last;
-    int _e55 = comb_2.first;
-    comb_2.last = min(_e53, asint(asuint(_e55) + asuint(int(16383))));
-    Vol_in_Comb _e59 = comb_2;
-    const Vol_in_Comb vol_in_comb = _e59;
+    int _e55 = comb_3.last;
+    int _e57 = comb_3.first;
+    comb_3.last = min(_e55, asint(asuint(_e57) + asuint(int(16383))));
+    Vol_in_Comb _e61 = comb_3;
+    const Vol_in_Comb vol_in_comb = _e61;
     return vol_in_comb;
 }
 
-int vol_in_next_node(inout Vol_in_Comb comb_3, int node_1, int lead)
+int naga_neg(int val) {
+    return asint(-asuint(val));
+}
+
+int vol_in_spacing_at(inout Vol_in_Comb comb_4, int step_3)
 {
-    int first_1 = VOL_IN_NO_NODE;
+    int spacing_1 = (int)0;
 
-    int after = asint(asuint(node_1) + asuint(int(1)));
-    {
-        int _e11 = comb_3.runs[0u].y;
-        if ((_e11 < after)) {
-            Vol_in_Runs _e17 = comb_3.all_[0u];
-            const int2 _e18 = vol_in_run_from(_e17, after);
-            comb_3.runs[0u] = _e18;
-        }
-        int _e19 = first_1;
-        int _e23 = comb_3.runs[0u].x;
-        first_1 = min(_e19, _e23);
-    }
-    int _e25 = first_1;
-    int next_2 = max(after, asint(asuint(_e25) - asuint(lead)));
-    {
-        float _e33 = comb_3.before[0u];
-        comb_3.before[0u] = ((next_2 > after) ? VOL_IN_FAR : _e33);
-        float _e41 = comb_3.own[0u];
-        comb_3.own[0u] = ((next_2 > after) ? VOL_IN_FAR : _e41);
-    }
-    return next_2;
-}
-
-float vol_in_node_distance(int node_2, float step_size_1, float offset)
-{
-    return ((float(node_2) + offset) * step_size_1);
-}
-
-float vol_in_panel_node(inout Vol_in_Comb comb_4, int node_3)
-{
-    float _e3 = comb_4.step_;
-    float _e5 = comb_4.offset;
-    const float _e6 = vol_in_node_distance(node_3, _e3, _e5);
-    float _e10 = comb_4.end;
-    return min(max(_e6, 0.0), _e10);
-}
-
-float vol_in_gap_probe(Vol_in_Gap gap, uint round_2)
-{
-    float length_1 = (gap.stop.x - gap.start.x);
-    float least_5 = (VOL_IN_LEAST_SHARE * length_1);
-    float touching_1 = ((gap.start.y + least_5) / ((gap.start.y + gap.stop.y) + (least_5 + least_5)));
-    return (gap.start.x + (length_1 * ((round_2 == 0u) ? touching_1 : 0.5)));
-}
-
-float vol_in_crossing_probe(Vol_in_Crossing crossing)
-{
-    float2 inside_2 = crossing.inside;
-    float2 outside_1 = crossing.outside;
-    return (inside_2.x + ((outside_1.x - inside_2.x) * (inside_2.y / (inside_2.y - outside_1.y))));
-}
-
-float vol_in_gap_room(Vol_in_Gap gap_1)
-{
-    return ((gap_1.stop.x - gap_1.start.x) - (gap_1.start.y + gap_1.stop.y));
-}
-
-Vol_in_Gap ConstructVol_in_Gap(float2 arg0, float2 arg1) {
-    Vol_in_Gap ret = (Vol_in_Gap)0;
-    ret.start = arg0;
-    ret.stop = arg1;
-    return ret;
-}
-
-Vol_in_Gap vol_in_gap_narrowed(Vol_in_Gap gap_2, float2 found_1)
-{
-    Vol_in_Gap first_9 = ConstructVol_in_Gap(gap_2.start, found_1);
-    Vol_in_Gap second = ConstructVol_in_Gap(found_1, gap_2.stop);
-    const float _e6 = vol_in_gap_room(second);
-    const float _e7 = vol_in_gap_room(first_9);
-    if ((_e6 > _e7)) {
-        const Vol_in_Gap vol_in_gap = second;
-        return vol_in_gap;
-    }
-    const Vol_in_Gap vol_in_gap_1 = first_9;
-    return vol_in_gap_1;
-}
-
-Vol_in_Crossing ConstructVol_in_Crossing(float2 arg0, float2 arg1, uint arg2) {
-    Vol_in_Crossing ret = (Vol_in_Crossing)0;
-    ret.inside = arg0;
-    ret.outside = arg1;
-    ret.moved = arg2;
-    return ret;
-}
-
-Vol_in_Crossing vol_in_crossing_narrowed(Vol_in_Crossing crossing_1, float2 found_2)
-{
-    if ((found_2.y < 0.0)) {
-        float2 kept = float2(crossing_1.outside.x, ((crossing_1.moved == 1u) ? (0.5 * crossing_1.outside.y) : crossing_1.outside.y));
-        const Vol_in_Crossing vol_in_crossing = ConstructVol_in_Crossing(found_2, kept, 1u);
-        return vol_in_crossing;
-    }
-    float2 kept_1 = float2(crossing_1.inside.x, ((crossing_1.moved == 2u) ? (0.5 * crossing_1.inside.y) : crossing_1.inside.y));
-    const Vol_in_Crossing vol_in_crossing_1 = ConstructVol_in_Crossing(kept_1, found_2, 2u);
-    return vol_in_crossing_1;
-}
-
-Vol_in_Between ConstructVol_in_Between(float arg0, float2 arg1, uint arg2) {
-    Vol_in_Between ret = (Vol_in_Between)0;
-    ret.next = arg0;
-    ret.walls = arg1;
-    ret.count = arg2;
-    return ret;
-}
-
-Vol_in_Between vol_in_find_walls(Vol_in_Ray ray_20, uint medium_2, inout Vol_in_Comb comb_5, int node_4, float2 t_28)
-{
-    Vol_in_Between between = ConstructVol_in_Between(4000000.0, (0.0).xx, 0u);
-    Vol_in_Gap gap_3 = (Vol_in_Gap)0;
-    Vol_in_Crossing crossing_2 = (Vol_in_Crossing)0;
-    Vol_in_Crossing other = (Vol_in_Crossing)0;
-    uint wanted = 0u;
-    uint aim = VOL_IN_THE_NODE;
-    uint round_3 = 0u;
-    float probe = (float)0;
-    float value_3 = (float)0;
-    bool local_4 = (bool)0;
-
-    float own_5 = comb_5.own[min(uint(medium_2), 0u)];
-    int2 run_1 = comb_5.runs[min(uint(medium_2), 0u)];
-    bool known = ((asint(asuint(node_4) + asuint(int(1))) >= run_1.x) & (node_4 <= run_1.y));
-    uint2 loop_bound_25 = uint2(4294967295u, 4294967295u);
-    while(true) {
-        if (all(loop_bound_25 == uint2(0u, 0u))) { break; }
-        loop_bound_25 -= uint2(loop_bound_25.y == 0u, 1u);
-        uint _e33 = aim;
-        if ((_e33 != VOL_IN_NO_MORE)) {
-        } else {
-            break;
-        }
+    int _e3 = comb_4.block;
+    spacing_1 = _e3;
+    if (VOL_IN_SPACED) {
+        int _e8 = spacing_1;
+        int first_7 = (max(step_3, int(0)) & naga_neg(_e8));
+        int _e11 = spacing_1;
+        float last_10 = float(asint(asuint(first_7) + asuint(asint(asuint(_e11) - asuint(int(1))))));
         {
-            probe = t_28.y;
-            uint _e38 = aim;
-            if ((_e38 == VOL_IN_A_GAP)) {
-                Vol_in_Gap _e41 = gap_3;
-                uint _e42 = round_3;
-                const float _e43 = vol_in_gap_probe(_e41, _e42);
-                probe = _e43;
-            } else {
-                uint _e44 = aim;
-                if ((_e44 == VOL_IN_A_WALL)) {
-                    Vol_in_Crossing _e47 = crossing_2;
-                    const float _e48 = vol_in_crossing_probe(_e47);
-                    probe = _e48;
-                }
-            }
-            float _e49 = probe;
-            const float3 _e50 = vol_in_ray_at(ray_20, _e49);
-            value_3 = VOL_IN_FAR;
-            uint _e53 = aim;
-            if (!((_e53 != VOL_IN_THE_NODE))) {
-                local_4 = known;
-            } else {
-                local_4 = true;
-            }
-            bool _e60 = local_4;
-            if (_e60) {
-                const float _e61 = vol_in_medium_region(medium_2, _e50);
-                value_3 = _e61;
-            }
-            float _e62 = probe;
-            float _e63 = value_3;
-            float2 found_5 = float2(_e62, _e63);
-            uint _e65 = round_3;
-            round_3 = (_e65 + 1u);
-            uint _e68 = aim;
-            if ((_e68 == VOL_IN_THE_NODE)) {
-                float _e72 = value_3;
-                between.next = _e72;
-                float2 start_3 = float2(t_28.x, own_5);
-                round_3 = 0u;
-                aim = VOL_IN_NO_MORE;
-                int _e78 = comb_5.first;
-                if (((node_4 >= _e78) & (t_28.x < t_28.y))) {
-                    float _e86 = value_3;
-                    if (((own_5 < 0.0) != (_e86 < 0.0))) {
-                        crossing_2 = ConstructVol_in_Crossing(((own_5 < 0.0) ? start_3 : found_5), ((own_5 < 0.0) ? found_5 : start_3), 0u);
-                        wanted = 1u;
-                        aim = VOL_IN_A_WALL;
-                    } else {
-                        gap_3 = ConstructVol_in_Gap(start_3, found_5);
-                        Vol_in_Gap _e103 = gap_3;
-                        const float _e104 = vol_in_gap_room(_e103);
-                        bool may_enter = ((own_5 >= 0.0) & (_e104 > 0.0));
-                        aim = (may_enter ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
-                    }
-                }
-            } else {
-                uint _e111 = aim;
-                if ((_e111 == VOL_IN_A_GAP)) {
-                    float _e114 = value_3;
-                    if ((_e114 < 0.0)) {
-                        float2 _e118 = gap_3.start;
-                        crossing_2 = ConstructVol_in_Crossing(found_5, _e118, 0u);
-                        float2 _e122 = gap_3.stop;
-                        other = ConstructVol_in_Crossing(found_5, _e122, 0u);
-                        wanted = 2u;
-                        aim = VOL_IN_A_WALL;
-                        round_3 = 0u;
-                    } else {
-                        Vol_in_Gap _e128 = gap_3;
-                        const Vol_in_Gap _e129 = vol_in_gap_narrowed(_e128, found_5);
-                        gap_3 = _e129;
-                        uint _e132 = round_3;
-                        Vol_in_Gap _e135 = gap_3;
-                        const float _e136 = vol_in_gap_room(_e135);
-                        aim = (((_e132 < VOL_IN_CHORD_ROUNDS) & (_e136 > 0.0)) ? VOL_IN_A_GAP : VOL_IN_NO_MORE);
-                    }
-                } else {
-                    Vol_in_Crossing _e141 = crossing_2;
-                    const Vol_in_Crossing _e142 = vol_in_crossing_narrowed(_e141, found_5);
-                    crossing_2 = _e142;
-                    uint _e143 = round_3;
-                    if ((_e143 == VOL_IN_WALL_ROUNDS)) {
-                        Vol_in_Crossing _e146 = crossing_2;
-                        const float _e147 = vol_in_crossing_probe(_e146);
-                        float _e151 = between.walls.x;
-                        uint _e155 = between.count;
-                        between.walls = ((_e155 == 0u) ? (_e147).xx : float2(_e151, _e147));
-                        uint _e160 = between.count;
-                        between.count = (_e160 + 1u);
-                        Vol_in_Crossing _e163 = other;
-                        crossing_2 = _e163;
-                        uint _e167 = between.count;
-                        uint _e168 = wanted;
-                        aim = ((_e167 < _e168) ? VOL_IN_A_WALL : VOL_IN_NO_MORE);
-                        round_3 = 0u;
-                    }
-                }
-            }
+            Vol_in_Runs runs_2 = comb_4.all_[0u];
+            bool there_2 = any(((runs_2.first <= (last_10).xxxx) & (runs_2.last >= (float(first_7)).xxxx)));
+            int _e29 = spacing_1;
+            int _e30 = spacing_1;
+            const int _e31 = vol_in_spacing_of(comb_4, 0u);
+            spacing_1 = (there_2 ? min(_e30, _e31) : _e29);
         }
     }
-    float _e175 = between.next;
-    comb_5.own[min(uint(medium_2), 0u)] = _e175;
-    Vol_in_Between _e176 = between;
-    const Vol_in_Between vol_in_between = _e176;
-    return vol_in_between;
+    int _e34 = spacing_1;
+    return _e34;
 }
 
-float2 vol_in_panel_stretch(float own, float2 t_29, Vol_in_Between between_1)
+bool vol_in_is_block_begun(inout Vol_in_Comb comb_5, int step_4)
 {
-    return (bool2((own < 0.0), (between_1.next < 0.0)) ? t_29 : between_1.walls);
+    int _e3 = comb_5.block;
+    return ((step_4 & asint(asuint(_e3) - asuint(int(1)))) == int(0));
 }
 
-uint2 vol_in_new_ends(float own_1, Vol_in_Between between_2)
-{
-    bool has_walls = (between_2.count > 0u);
-    uint first_10 = (((own_1 >= 0.0) & has_walls) ? VOL_IN_START_END : VOL_IN_STOP_END);
-    return uint2(first_10, (((between_2.next < 0.0) | has_walls) ? 2u : VOL_IN_STOP_END));
+Vol_in_Node ConstructVol_in_Node(int arg0, int arg1, int arg2) {
+    Vol_in_Node ret = (Vol_in_Node)0;
+    ret.first = arg0;
+    ret.steps = arg1;
+    ret.number = arg2;
+    return ret;
 }
 
-bool vol_in_has_panel(inout Vol_in_Comb comb_6, int node_5, float2 t_30, float own_2, Vol_in_Between between_3)
+Vol_in_Node vol_in_node_before(inout Vol_in_Comb comb_6, Vol_in_Node node_1)
 {
-    bool some_3 = (((own_2 < 0.0) | (between_3.next < 0.0)) | (between_3.count > 0u));
-    int _e16 = comb_6.first;
-    return (((node_5 >= _e16) & (t_30.x < t_30.y)) & some_3);
+    int steps = (int)0;
+    bool local_5 = (bool)0;
+
+    steps = node_1.steps;
+    if (VOL_IN_SPACED) {
+        const bool _e8 = vol_in_is_block_begun(comb_6, node_1.first);
+        local_5 = _e8;
+    } else {
+        local_5 = false;
+    }
+    bool _e10 = local_5;
+    if (_e10) {
+        const int _e14 = vol_in_spacing_at(comb_6, asint(asuint(node_1.first) - asuint(int(1))));
+        steps = _e14;
+    }
+    int _e16 = steps;
+    int _e18 = steps;
+    const Vol_in_Node vol_in_node = ConstructVol_in_Node(asint(asuint(node_1.first) - asuint(_e16)), _e18, asint(asuint(node_1.number) - asuint(int(1))));
+    return vol_in_node;
 }
 
-bool2 vol_in_open_ends(inout Vol_in_Comb comb_7, int node_6, float2 t_31, float own_3, float next)
-{
-    float _e9 = comb_7.step_;
-    float _e11 = comb_7.offset;
-    const float _e12 = vol_in_node_distance(asint(asuint(node_6) + asuint(int(1))), _e9, _e11);
-    bool is_last = (t_31.y < _e12);
-    return bool2(((own_3 >= 0.0) | (node_6 == int(0))), ((next >= 0.0) | is_last));
+int naga_div(int lhs, int rhs) {
+    return lhs / (((lhs == int(-2147483647 - 1) & rhs == -1) | (rhs == 0)) ? 1 : rhs);
 }
 
-float2 vol_in_panel_masses(float step_size_2, float length_, float2 ends_2, bool2 open)
+Vol_in_Node vol_in_node_at(inout Vol_in_Comb comb_7, Vol_in_Node known, int step_5)
 {
-    float half_1 = (0.5 * length_);
-    float above_1 = max(ends_2.x, ends_2.y);
-    float below_1 = min(ends_2.x, ends_2.y);
-    bool changes = ((above_1 > 0.0) & (below_1 < 0.0));
-    float2 densities = max(ends_2, (0.0).xx);
-    float rise_3 = (open.x ? (densities.y - densities.x) : (densities.x - densities.y));
-    float part_5 = (step_size_2 / max(length_, (0.25 * step_size_2)));
-    float most_1 = (0.5 * (half_1 * (densities.x + densities.y)));
-    float missed = max(min(((0.083333336 * step_size_2) * (part_5 * rise_3)), most_1), -(most_1));
-    float2 given = (open.x ? float2(0.0, missed) : float2(missed, 0.0));
-    float2 plain = max(((half_1 * densities) + ((open.x == open.y) ? (0.0).xx : given)), (0.0).xx);
-    float fall_3 = (changes ? (above_1 - below_1) : 1.0);
-    float mass = ((half_1 * (above_1 * (above_1 / fall_3))) + (length_ * (fall_3 * 0.083333336)));
-    float2 cut = ((ends_2.x > 0.0) ? float2(mass, 0.0) : float2(0.0, mass));
-    return (changes ? cut : plain);
+    if (true) {
+        const Vol_in_Node vol_in_node_1 = ConstructVol_in_Node(step_5, int(1), step_5);
+        return vol_in_node_1;
+    }
+    int block_2 = comb_7.block;
+    int own_end = asint(asuint((known.first | asint(asuint(block_2) - asuint(int(1))))) + asuint(int(1)));
+    if ((step_5 < own_end)) {
+        int more_2 = naga_div(asint(asuint(step_5) - asuint(known.first)), known.steps);
+        const Vol_in_Node vol_in_node_2 = ConstructVol_in_Node(asint(asuint(known.first) + asuint(asint(asuint(more_2) * asuint(known.steps)))), known.steps, asint(asuint(known.number) + asuint(more_2)));
+        return vol_in_node_2;
+    }
+    int begin_1 = (step_5 & naga_neg(block_2));
+    const int _e29 = vol_in_spacing_at(comb_7, step_5);
+    int whole_2 = asint(asuint(naga_div(asint(asuint(own_end) - asuint(known.first)), known.steps)) + asuint(naga_div(asint(asuint(begin_1) - asuint(own_end)), block_2)));
+    int more_3 = naga_div(asint(asuint(step_5) - asuint(begin_1)), _e29);
+    const Vol_in_Node vol_in_node_3 = ConstructVol_in_Node(asint(asuint(begin_1) + asuint(asint(asuint(more_3) * asuint(_e29)))), _e29, asint(asuint(known.number) + asuint(asint(asuint(whole_2) + asuint(more_3)))));
+    return vol_in_node_3;
 }
 
-float3 vol_in_panel_depth(Vol_in_Ray ray_21, inout Vol_in_Comb comb_8, int node_7, inout float4 before_4[1])
+Vol_in_Node vol_in_node_ahead(inout Vol_in_Comb comb_8, Vol_in_Node earliest, int step_6, int lead)
 {
-    float3 depth_1 = (0.0).xxx;
-    float4 first_2 = (float4)0;
-    float4 last_3 = (0.0).xxxx;
-    uint end_5 = (uint)0;
+    Vol_in_Node node_2 = (Vol_in_Node)0;
+    int back = int(0);
 
-    float step_size_5 = comb_8.step_;
-    const float _e6 = vol_in_panel_node(comb_8, node_7);
-    const float _e9 = vol_in_panel_node(comb_8, asint(asuint(node_7) + asuint(int(1))));
-    float2 t_40 = float2(_e6, _e9);
-    {
-        float own_6 = comb_8.own[0u];
-        const Vol_in_Between _e18 = vol_in_find_walls(ray_21, 0u, comb_8, node_7, t_40);
-        const float2 _e19 = vol_in_panel_stretch(own_6, t_40, _e18);
-        float4 _e21 = before_4[0u];
-        first_2 = _e21;
-        const uint2 _e26 = vol_in_new_ends(own_6, _e18);
-        end_5 = _e26.x;
-        uint2 loop_bound_26 = uint2(4294967295u, 4294967295u);
+    if (true) {
+        int first_8 = max(earliest.first, asint(asuint(step_6) - asuint(lead)));
+        const Vol_in_Node vol_in_node_4 = ConstructVol_in_Node(first_8, int(1), first_8);
+        return vol_in_node_4;
+    }
+    node_2 = earliest;
+    if ((step_6 > earliest.first)) {
+        const Vol_in_Node _e13 = vol_in_node_at(comb_8, earliest, step_6);
+        node_2 = _e13;
+        uint2 loop_bound_25 = uint2(4294967295u, 4294967295u);
         bool loop_init_25 = true;
         while(true) {
-            if (all(loop_bound_26 == uint2(0u, 0u))) { break; }
-            loop_bound_26 -= uint2(loop_bound_26.y == 0u, 1u);
+            if (all(loop_bound_25 == uint2(0u, 0u))) { break; }
+            loop_bound_25 -= uint2(loop_bound_25.y == 0u, 1u);
             if (!loop_init_25) {
-                uint _e45 = end_5;
-                end_5 = (_e45 + 1u);
+                int _e25 = back;
+                back = asint(asuint(_e25) + asuint(int(1)));
             }
             loop_init_25 = false;
-            uint _e29 = end_5;
-            if ((_e29 < _e26.y)) {
+            int _e16 = back;
+            if ((_e16 < lead)) {
             } else {
                 break;
             }
             {
-                uint _e32 = end_5;
-                bool at_stop_1 = (_e32 == VOL_IN_STOP_END);
-                const float3 _e38 = vol_in_ray_at(ray_21, (at_stop_1 ? _e19.y : _e19.x));
-                const float4 _e39 = vol_in_medium_extinction(0u, _e38);
-                float4 _e40 = first_2;
-                first_2 = (at_stop_1 ? _e40 : _e39);
-                float4 _e42 = last_3;
-                last_3 = (at_stop_1 ? _e39 : _e42);
+                int _e19 = node_2.number;
+                if ((_e19 > earliest.number)) {
+                    Vol_in_Node _e22 = node_2;
+                    const Vol_in_Node _e23 = vol_in_node_before(comb_8, _e22);
+                    node_2 = _e23;
+                }
             }
         }
-        float4 _e50 = last_3;
-        before_4[0u] = ((_e18.next < 0.0) ? _e50 : (0.0).xxxx);
-        const bool _e55 = vol_in_has_panel(comb_8, node_7, t_40, own_6, _e18);
-        if (_e55) {
-            const bool2 _e57 = vol_in_open_ends(comb_8, node_7, t_40, own_6, _e18.next);
-            float _e62 = first_2.x;
-            float _e64 = last_3.x;
-            const float2 _e66 = vol_in_panel_masses(step_size_5, (_e19.y - _e19.x), float2(_e62, _e64), _e57);
-            float3 _e67 = depth_1;
-            float4 _e68 = first_2;
-            float4 _e72 = last_3;
-            depth_1 = (_e67 + ((_e68.yzw * _e66.x) + (_e72.yzw * _e66.y)));
-        }
     }
-    float3 _e78 = depth_1;
-    return _e78;
+    Vol_in_Node _e27 = node_2;
+    const Vol_in_Node vol_in_node_5 = _e27;
+    return vol_in_node_5;
 }
 
-float3 vol_in_depth_by_panels(Vol_in_Ray ray_22, float end_6)
+Vol_in_Node vol_in_start_node(inout Vol_in_Comb comb_9, int lead_1)
 {
-    Vol_in_Comb comb_9 = (Vol_in_Comb)0;
-    float4 before_5[1] = (float4[1])0;
-    float3 depth_2 = (0.0).xxx;
-    int node_8 = (int)0;
+    Vol_in_Node before_4 = (Vol_in_Node)0;
+    int back_1 = int(0);
 
-    const float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    const Vol_in_Comb _e4 = vol_in_new_comb(ray_22, end_6, _e3);
-    comb_9 = _e4;
-    int _e11 = comb_9.first;
-    node_8 = asint(asuint(_e11) - asuint(int(1)));
-    uint2 loop_bound_27 = uint2(4294967295u, 4294967295u);
+    const int _e3 = vol_in_spacing_at(comb_9, int(0));
+    Vol_in_Node origin_2 = ConstructVol_in_Node(int(0), _e3, int(0));
+    before_4 = origin_2;
+    uint2 loop_bound_26 = uint2(4294967295u, 4294967295u);
     bool loop_init_26 = true;
     while(true) {
-        if (all(loop_bound_27 == uint2(0u, 0u))) { break; }
-        loop_bound_27 -= uint2(loop_bound_27.y == 0u, 1u);
+        if (all(loop_bound_26 == uint2(0u, 0u))) { break; }
+        loop_bound_26 -= uint2(loop_bound_26.y == 0u, 1u);
         if (!loop_init_26) {
-            int _e27 = node_8;
-            const int _e29 = vol_in_next_node(comb_9, _e27, int(1));
-            node_8 = _e29;
+            int _e15 = back_1;
+            back_1 = asint(asuint(_e15) + asuint(int(1)));
         }
         loop_init_26 = false;
-        int _e15 = node_8;
-        int _e17 = comb_9.last;
-        if ((_e15 <= _e17)) {
+        int _e10 = back_1;
+        if ((_e10 < lead_1)) {
         } else {
             break;
         }
         {
-            float3 _e19 = depth_2;
-            int _e20 = node_8;
-            const float3 _e21 = vol_in_panel_depth(ray_22, comb_9, _e20, before_5);
-            depth_2 = (_e19 + _e21);
-            float3 _e23 = depth_2;
-            const float _e24 = vol_in_smallest(_e23);
-            if ((_e24 > VOL_IN_OPAQUE)) {
-                break;
-            }
+            Vol_in_Node _e12 = before_4;
+            const Vol_in_Node _e13 = vol_in_node_before(comb_9, _e12);
+            before_4 = _e13;
         }
     }
-    float3 _e30 = depth_2;
-    return _e30;
+    Vol_in_Node _e17 = before_4;
+    int _e19 = comb_9.first;
+    const Vol_in_Node _e20 = vol_in_node_ahead(comb_9, _e17, _e19, lead_1);
+    const Vol_in_Node vol_in_node_6 = _e20;
+    return vol_in_node_6;
 }
 
-float vol_in_wall(Vol_in_Ray ray_23, uint medium_3, int2 run, float t_32, int node_9, float end_7)
+Vol_in_Node vol_in_node_after(inout Vol_in_Comb comb_10, Vol_in_Node node_3)
+{
+    Vol_in_Node after = (Vol_in_Node)0;
+    bool local_6 = (bool)0;
+
+    after = ConstructVol_in_Node(asint(asuint(node_3.first) + asuint(node_3.steps)), node_3.steps, asint(asuint(node_3.number) + asuint(int(1))));
+    if (VOL_IN_SPACED) {
+        int _e15 = after.first;
+        const bool _e16 = vol_in_is_block_begun(comb_10, _e15);
+        local_6 = _e16;
+    } else {
+        local_6 = false;
+    }
+    bool _e18 = local_6;
+    if (_e18) {
+        int _e21 = after.first;
+        const int _e22 = vol_in_spacing_at(comb_10, _e21);
+        after.steps = _e22;
+    }
+    Vol_in_Node _e23 = after;
+    const Vol_in_Node vol_in_node_7 = _e23;
+    return vol_in_node_7;
+}
+
+Vol_in_Node vol_in_next_node(inout Vol_in_Comb comb_11, Vol_in_Node node_4, int lead_2)
+{
+    int first_1 = VOL_IN_NO_NODE;
+
+    const Vol_in_Node _e3 = vol_in_node_after(comb_11, node_4);
+    {
+        int _e10 = comb_11.runs[0u].y;
+        if ((_e10 < _e3.first)) {
+            Vol_in_Runs _e17 = comb_11.all_[0u];
+            const int2 _e19 = vol_in_run_from(_e17, _e3.first);
+            comb_11.runs[0u] = _e19;
+        }
+        int _e20 = first_1;
+        int _e24 = comb_11.runs[0u].x;
+        first_1 = min(_e20, _e24);
+    }
+    int _e26 = first_1;
+    const Vol_in_Node _e27 = vol_in_node_ahead(comb_11, _e3, _e26, lead_2);
+    bool is_farther = (_e27.first > _e3.first);
+    comb_11.steps_before = node_4.steps;
+    {
+        float _e38 = comb_11.before[0u];
+        comb_11.before[0u] = (is_farther ? VOL_IN_FAR : _e38);
+        float _e45 = comb_11.own[0u];
+        comb_11.own[0u] = (is_farther ? VOL_IN_FAR : _e45);
+    }
+    const Vol_in_Node vol_in_node_8 = _e27;
+    return vol_in_node_8;
+}
+
+float vol_in_wall(Vol_in_Ray ray_20, uint medium_3, int2 run, float t_28, Vol_in_Node node_5, int steps_before, float end_5)
 {
     float region = VOL_IN_FAR;
 
-    if (((node_9 >= asint(asuint(run.x) - asuint(int(1)))) & (node_9 <= asint(asuint(run.y) + asuint(int(1)))))) {
-        const float3 _e17 = vol_in_ray_at(ray_23, t_32);
-        const float _e18 = vol_in_medium_region(medium_3, _e17);
-        region = _e18;
+    if (((asint(asuint(node_5.first) + asuint(asint(asuint(int(2)) * asuint(node_5.steps)))) > run.x) & (node_5.first <= asint(asuint(run.y) + asuint(max(node_5.steps, steps_before)))))) {
+        const float3 _e23 = vol_in_ray_at(ray_20, t_28);
+        const float _e24 = vol_in_medium_region(medium_3, _e23);
+        region = _e24;
     }
-    float _e19 = region;
-    return max(_e19, max((t_32 - end_7), -(t_32)));
+    float _e25 = region;
+    return max(_e25, max((t_28 - end_5), -(t_28)));
 }
 
-float vol_in_share(float own_4, float other_1, float step_size_3)
+float vol_in_node_distance(int node_6, float step_size_1, float offset)
 {
-    float divisor_4 = ((own_4 < other_1) ? (own_4 - other_1) : -1.0);
-    float part_6 = (step_size_3 * (own_4 / divisor_4));
-    return ((other_1 < 0.0) ? (0.5 * step_size_3) : part_6);
+    return ((float(node_6) + offset) * step_size_1);
 }
 
-bool vol_in_weigh(Vol_in_Ray ray_24, inout Vol_in_Comb comb_10, int node_10, inout float weights[1])
+float vol_in_middle_of(inout Vol_in_Comb comb_12, Vol_in_Node node_7)
 {
-    bool any_inside = false;
-
-    float step_size_6 = comb_10.step_;
-    float _e11 = comb_10.offset;
-    const float _e12 = vol_in_node_distance(asint(asuint(node_10) + asuint(int(1))), step_size_6, _e11);
-    {
-        float before_10 = comb_10.before[0u];
-        float own_7 = comb_10.own[0u];
-        int2 _e22 = comb_10.runs[0u];
-        float _e26 = comb_10.end;
-        const float _e27 = vol_in_wall(ray_24, 0u, _e22, _e12, asint(asuint(node_10) + asuint(int(1))), _e26);
-        const float _e28 = vol_in_share(own_7, before_10, step_size_6);
-        const float _e29 = vol_in_share(own_7, _e27, step_size_6);
-        float weight = (_e28 + _e29);
-        int _e34 = comb_10.first;
-        bool is_inside_1 = ((own_7 < 0.0) & (node_10 >= _e34));
-        weights[0u] = (is_inside_1 ? weight : 0.0);
-        bool _e40 = any_inside;
-        any_inside = (_e40 | is_inside_1);
-        comb_10.before[0u] = own_7;
-        comb_10.own[0u] = _e27;
-    }
-    bool _e46 = any_inside;
-    return _e46;
+    float _e4 = comb_12.step_;
+    float _e6 = comb_12.offset;
+    const float _e14 = vol_in_node_distance(node_7.first, _e4, (_e6 + (0.5 * float(asint(asuint(node_7.steps) - asuint(int(1)))))));
+    return _e14;
 }
 
-float3 vol_in_node_depth(float3 point_5, inout float weights_1[1])
+float vol_in_share(float2 own, float2 other)
 {
-    float3 depth_3 = (0.0).xxx;
-
-    {
-        float weight_1 = weights_1[0u];
-        if ((weight_1 > 0.0)) {
-            const float4 _e10 = vol_in_medium_extinction(0u, point_5);
-            float3 _e11 = depth_3;
-            depth_3 = (_e11 + (_e10.yzw * (max(_e10.x, 0.0) * weight_1)));
-        }
-    }
-    float3 _e19 = depth_3;
-    return _e19;
+    float divisor_4 = ((own.x < other.x) ? (own.x - other.x) : -1.0);
+    float part_5 = ((own.y + other.y) * (own.x / divisor_4));
+    return ((other.x < 0.0) ? own.y : part_5);
 }
 
-float3 vol_in_depth_by_nodes(Vol_in_Ray ray_25, float end_8)
+float vol_in_weigh(Vol_in_Ray ray_21, uint medium_4, inout Vol_in_Comb comb_13, Vol_in_Node node_8, Vol_in_Node next)
 {
-    Vol_in_Comb comb_11 = (Vol_in_Comb)0;
-    float weights_2[1] = (float[1])0;
-    float3 depth_4 = (0.0).xxx;
-    int node_11 = (int)0;
+    int _e6 = comb_13.steps_before;
+    float _e12 = comb_13.step_;
+    float3 halves = (0.5 * (float3(int3(_e6, node_8.steps, next.steps)) * _e12));
+    float before_9 = comb_13.before[min(uint(medium_4), 0u)];
+    float own_1 = comb_13.own[min(uint(medium_4), 0u)];
+    int2 _e24 = comb_13.runs[min(uint(medium_4), 0u)];
+    const float _e25 = vol_in_middle_of(comb_13, next);
+    float _e28 = comb_13.end;
+    const float _e29 = vol_in_wall(ray_21, medium_4, _e24, _e25, next, node_8.steps, _e28);
+    float2 here_1 = float2(own_1, halves.y);
+    const float _e34 = vol_in_share(here_1, float2(before_9, halves.x));
+    const float _e37 = vol_in_share(here_1, float2(_e29, halves.z));
+    float weight = (_e34 + _e37);
+    comb_13.before[min(uint(medium_4), 0u)] = own_1;
+    comb_13.own[min(uint(medium_4), 0u)] = _e29;
+    int _e47 = comb_13.first;
+    return (((own_1 < 0.0) & (next.first > _e47)) ? weight : 0.0);
+}
+
+float3 vol_in_optical_depth(Vol_in_Ray ray_22, float end_6)
+{
+    Vol_in_Comb comb_14 = (Vol_in_Comb)0;
+    float4 ahead_2[1] = (float4[1])0;
+    float3 depth_1 = (0.0).xxx;
+    Vol_in_Node node_9 = (Vol_in_Node)0;
+    float3 node_depth = (float3)0;
 
     const float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
-    const Vol_in_Comb _e4 = vol_in_new_comb(ray_25, end_8, _e3);
-    comb_11 = _e4;
-    int _e11 = comb_11.first;
-    node_11 = asint(asuint(_e11) - asuint(int(2)));
-    uint2 loop_bound_28 = uint2(4294967295u, 4294967295u);
+    const Vol_in_Comb _e5 = vol_in_new_comb(ray_22, end_6, _e3, int(1));
+    comb_14 = _e5;
+    const Vol_in_Node _e12 = vol_in_start_node(comb_14, int(2));
+    node_9 = _e12;
+    uint2 loop_bound_27 = uint2(4294967295u, 4294967295u);
     bool loop_init_27 = true;
     while(true) {
-        if (all(loop_bound_28 == uint2(0u, 0u))) { break; }
-        loop_bound_28 -= uint2(loop_bound_28.y == 0u, 1u);
+        if (all(loop_bound_27 == uint2(0u, 0u))) { break; }
+        loop_bound_27 -= uint2(loop_bound_27.y == 0u, 1u);
         if (!loop_init_27) {
-            int _e35 = node_11;
-            const int _e37 = vol_in_next_node(comb_11, _e35, int(2));
-            node_11 = _e37;
+            Vol_in_Node _e53 = node_9;
+            const Vol_in_Node _e55 = vol_in_next_node(comb_14, _e53, int(2));
+            node_9 = _e55;
         }
         loop_init_27 = false;
-        int _e15 = node_11;
-        int _e17 = comb_11.last;
+        int _e15 = node_9.first;
+        int _e17 = comb_14.last;
         if ((_e15 <= _e17)) {
         } else {
             break;
         }
         {
-            int _e19 = node_11;
-            const bool _e20 = vol_in_weigh(ray_25, comb_11, _e19, weights_2);
-            if (_e20) {
-                float3 _e21 = depth_4;
-                int _e22 = node_11;
-                float _e24 = comb_11.step_;
-                float _e26 = comb_11.offset;
-                const float _e27 = vol_in_node_distance(_e22, _e24, _e26);
-                const float3 _e28 = vol_in_ray_at(ray_25, _e27);
-                const float3 _e29 = vol_in_node_depth(_e28, weights_2);
-                depth_4 = (_e21 + _e29);
+            Vol_in_Node _e19 = node_9;
+            const Vol_in_Node _e20 = vol_in_node_after(comb_14, _e19);
+            node_depth = (0.0).xxx;
+            {
+                Vol_in_Node _e25 = node_9;
+                const float _e26 = vol_in_weigh(ray_22, 0u, comb_14, _e25, _e20);
+                float4 matter = ahead_2[0u];
+                float _e31 = comb_14.own[0u];
+                if ((_e31 < 0.0)) {
+                    const float _e35 = vol_in_middle_of(comb_14, _e20);
+                    const float3 _e36 = vol_in_ray_at(ray_22, _e35);
+                    const float4 _e37 = vol_in_medium_extinction(0u, _e36);
+                    ahead_2[0u] = _e37;
+                }
+                float3 _e38 = node_depth;
+                node_depth = (_e38 + (matter.yzw * (max(matter.x, 0.0) * _e26)));
             }
-            float3 _e31 = depth_4;
-            const float _e32 = vol_in_smallest(_e31);
-            if ((_e32 > VOL_IN_OPAQUE)) {
+            float3 _e46 = depth_1;
+            float3 _e47 = node_depth;
+            depth_1 = (_e46 + _e47);
+            float3 _e49 = depth_1;
+            const float _e50 = vol_in_smallest(_e49);
+            if ((_e50 > VOL_IN_OPAQUE)) {
                 break;
             }
         }
     }
-    float3 _e38 = depth_4;
-    return _e38;
+    float3 _e56 = depth_1;
+    return _e56;
 }
 
-float3 vol_in_optical_depth(Vol_in_Ray ray_26, float end_9)
-{
-    if (VOL_IN_CORRECTED) {
-        const float3 _e3 = vol_in_depth_by_panels(ray_26, end_9);
-        return _e3;
-    }
-    const float3 _e4 = vol_in_depth_by_nodes(ray_26, end_9);
-    return _e4;
-}
-
-float3 vol_in_depth_towards(Vol_in_Ray ray_27, float distance_6, uint grid_1)
+float3 vol_in_depth_towards(Vol_in_Ray ray_23, float distance_6, uint grid_1)
 {
     if (VOL_IN_LIGHT_GRIDS) {
         if ((grid_1 != 0u)) {
-            const float3 _e7 = vol_in_grid_depth(grid_1, ray_27.origin);
+            const float3 _e7 = vol_in_grid_depth(grid_1, ray_23.origin);
             return _e7;
         }
     }
-    const float3 _e8 = vol_in_optical_depth(ray_27, distance_6);
+    const float3 _e8 = vol_in_optical_depth(ray_23, distance_6);
     return _e8;
 }
 
-float3 vol_in_through_media(Vol_in_Ray ray_28, float distance_7, float part, uint grid_2)
+float3 vol_in_through_media(Vol_in_Ray ray_24, float distance_7, float part, uint grid_2)
 {
     if ((part <= 0.0)) {
         return (0.0).xxx;
     }
-    const float3 _e8 = vol_in_depth_towards(ray_28, distance_7, grid_2);
+    const float3 _e8 = vol_in_depth_towards(ray_24, distance_7, grid_2);
     const float3 _e9 = vol_in_decay3_(_e8);
     const float _e13 = vol_in_smallest(_e8);
     return ((_e13 > VOL_IN_OPAQUE) ? (0.0).xxx : (_e9 * part));
 }
 
-float3 vol_in_soft_visibility(Vol_in_Ray ray_29, float distance_8, float bias_1, float slope_6, uint grid_3)
+float3 vol_in_soft_visibility(Vol_in_Ray ray_25, float distance_8, float bias_1, float slope_6, uint grid_3)
 {
     float part_1 = 0.0;
-    bool local_5 = (bool)0;
+    bool local_7 = (bool)0;
 
     if (VOL_IN_SOFT_LIGHTS) {
-        local_5 = (slope_6 > 0.0);
+        local_7 = (slope_6 > 0.0);
     } else {
-        local_5 = false;
+        local_7 = false;
     }
-    bool _e13 = local_5;
+    bool _e13 = local_7;
     if (_e13) {
-        const float _e16 = vol_in_lit_part_of(ray_29, distance_8, (0.25 * bias_1), slope_6);
+        const float _e16 = vol_in_lit_part_of(ray_25, distance_8, (0.25 * bias_1), slope_6);
         part_1 = _e16;
     } else {
-        const float _e17 = vol_in_unblocked(ray_29, distance_8, bias_1);
+        const float _e17 = vol_in_unblocked(ray_25, distance_8, bias_1);
         part_1 = _e17;
     }
     float _e18 = part_1;
-    const float3 _e19 = vol_in_through_media(ray_29, distance_8, _e18, grid_3);
+    const float3 _e19 = vol_in_through_media(ray_25, distance_8, _e18, grid_3);
     return _e19;
 }
 
@@ -3923,8 +3716,8 @@ float3 vol_in_surface_visibility(Vol_in_Arriving lamp, Vol_in_Contact contact)
     }
     const float _e7 = vol_in_shadow_bias(contact.t);
     float offset_1 = max(_e7, (2.0 * contact.residual));
-    float3 origin_2 = (contact.position + (contact.normal * offset_1));
-    const Vol_in_Ray _e17 = vol_in_new_ray(origin_2, lamp.direction);
+    float3 origin_3 = (contact.position + (contact.normal * offset_1));
+    const Vol_in_Ray _e17 = vol_in_new_ray(origin_3, lamp.direction);
     const float3 _e21 = vol_in_soft_visibility(_e17, lamp.distance_, _e7, lamp.slope, lamp.grid);
     return _e21;
 }
@@ -3936,14 +3729,14 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
     float farthest_1 = -4000000.0;
     uint solid_14 = 0u;
 
-    float3 point_7 = (contact_1.position + (contact_1.normal * height));
+    float3 point_6 = (contact_1.position + (contact_1.normal * height));
     distance_9 = height;
     others_1 = height;
-    uint2 loop_bound_29 = uint2(4294967295u, 4294967295u);
+    uint2 loop_bound_28 = uint2(4294967295u, 4294967295u);
     bool loop_init_28 = true;
     while(true) {
-        if (all(loop_bound_29 == uint2(0u, 0u))) { break; }
-        loop_bound_29 -= uint2(loop_bound_29.y == 0u, 1u);
+        if (all(loop_bound_28 == uint2(0u, 0u))) { break; }
+        loop_bound_28 -= uint2(loop_bound_28.y == 0u, 1u);
         if (!loop_init_28) {
             uint _e56 = solid_14;
             solid_14 = (_e56 + 1u);
@@ -3970,14 +3763,14 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
             float3 lo_4 = (_e31 - (height).xxx);
             const float3 _e36 = vol_in_word3_((_e28 + 4u));
             float3 hi_4 = (_e36 + (height).xxx);
-            const bool _e39 = vol_in_contains(lo_4, hi_4, point_7);
+            const bool _e39 = vol_in_contains(lo_4, hi_4, point_6);
             const float _e40 = vol_frame_word(_e28);
             if ((_e39 & (_e40 != 0.0))) {
                 float _e44 = farthest_1;
                 uint _e45 = solid_14;
                 float _e47 = sides_6[min(uint(_e45), 0u)];
                 uint _e48 = solid_14;
-                const float _e49 = vol_in_object_distance(_e48, point_7);
+                const float _e49 = vol_in_object_distance(_e48, point_6);
                 farthest_1 = max(_e44, (_e47 * _e49));
                 float _e52 = others_1;
                 float _e53 = farthest_1;
@@ -3991,17 +3784,17 @@ float vol_in_distance_above(Vol_in_Contact contact_1, float height, inout float 
 
 float vol_in_openness(Vol_in_Contact contact_2, float reach)
 {
-    float weights_3[5] = VOL_IN_WEIGHTS;
+    float weights[5] = VOL_IN_WEIGHTS;
     float sides_7[1] = (float[1])0;
     float hidden = 0.0;
     uint index_18 = 0u;
 
     vol_in_find_sides(sides_7);
-    uint2 loop_bound_30 = uint2(4294967295u, 4294967295u);
+    uint2 loop_bound_29 = uint2(4294967295u, 4294967295u);
     bool loop_init_29 = true;
     while(true) {
-        if (all(loop_bound_30 == uint2(0u, 0u))) { break; }
-        loop_bound_30 -= uint2(loop_bound_30.y == 0u, 1u);
+        if (all(loop_bound_29 == uint2(0u, 0u))) { break; }
+        loop_bound_29 -= uint2(loop_bound_29.y == 0u, 1u);
         if (!loop_init_29) {
             uint _e35 = index_18;
             index_18 = (_e35 + 1u);
@@ -4020,7 +3813,7 @@ float vol_in_openness(Vol_in_Contact contact_2, float reach)
             float lack = max(((height_1 - _e19) / height_1), 0.0);
             float _e24 = hidden;
             uint _e25 = index_18;
-            float _e27 = weights_3[min(uint(_e25), 4u)];
+            float _e27 = weights[min(uint(_e25), 4u)];
             hidden = (_e24 + (_e27 * min((0.5 * lack), 1.0)));
         }
     }
@@ -4036,7 +3829,7 @@ float3 vol_in_answer(Vol_in_Response response, Vol_in_Contact contact_3, Vol_in_
     return ((response.diffuse * cosine) + (response.specular * _e14));
 }
 
-float3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4)
+float3 vol_in_shade(Vol_in_Ray ray_26, Vol_in_Contact contact_4)
 {
     float3 color = (float3)0;
     uint light_1 = 0u;
@@ -4052,11 +3845,11 @@ float3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4)
     color = _e15.emitted;
     const uint _e30 = vol_in_light_count();
     uint count_6 = (answers ? _e30 : 0u);
-    uint2 loop_bound_31 = uint2(4294967295u, 4294967295u);
+    uint2 loop_bound_30 = uint2(4294967295u, 4294967295u);
     bool loop_init_30 = true;
     while(true) {
-        if (all(loop_bound_31 == uint2(0u, 0u))) { break; }
-        loop_bound_31 -= uint2(loop_bound_31.y == 0u, 1u);
+        if (all(loop_bound_30 == uint2(0u, 0u))) { break; }
+        loop_bound_30 -= uint2(loop_bound_30.y == 0u, 1u);
         if (!loop_init_30) {
             uint _e69 = light_1;
             light_1 = (_e69 + 1u);
@@ -4085,7 +3878,7 @@ float3 vol_in_shade(Vol_in_Ray ray_30, Vol_in_Contact contact_4)
                 }
                 float3 _e60 = color;
                 float3 _e62 = seen;
-                const float3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_30.direction);
+                const float3 _e65 = vol_in_answer(_e15, contact_4, _e38, _e41, ray_26.direction);
                 color = (_e60 + ((_e38.irradiance * _e62) * _e65));
             }
         }
@@ -4115,167 +3908,67 @@ Vol_in_StyledRays ConstructVol_in_StyledRays(float arg0) {
     return ret;
 }
 
-Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_31, float end_10)
+Vol_in_StyledRays vol_in_style_rays(Vol_in_Ray ray_27, float end_7)
 {
     const Vol_in_StyledRays vol_in_styledrays = ConstructVol_in_StyledRays(0.0);
     return vol_in_styledrays;
 }
 
-Vol_in_PanelEnd ConstructVol_in_PanelEnd(Vol_in_Interior arg0, float3 arg1, float arg2, bool arg3) {
-    Vol_in_PanelEnd ret = (Vol_in_PanelEnd)0;
-    ret.interior = arg0;
-    ret.source = arg1;
-    ret.distance_ = arg2;
-    ret.is_node = arg3;
-    return ret;
-}
-
-void vol_in_find_panels(Vol_in_Ray ray_32, inout Vol_in_Comb comb_12, int node_12, float2 t_33, inout Vol_in_Panels panels)
+int vol_in_widest_spacing()
 {
-    Vol_in_PanelEnd start = (Vol_in_PanelEnd)0;
-    Vol_in_PanelEnd stop = (Vol_in_PanelEnd)0;
-    uint end_11 = (uint)0;
-    float2 masses = (0.0).xx;
+    int widest_1 = int(1);
 
-    panels.depth = (0.0).xxx;
-    panels.some = false;
-    {
-        float own_8 = comb_12.own[0u];
-        const Vol_in_Between _e14 = vol_in_find_walls(ray_32, 0u, comb_12, node_12, t_33);
-        const float2 _e15 = vol_in_panel_stretch(own_8, t_33, _e14);
-        Vol_in_Interior nothing = ConstructVol_in_Interior(0.0, (0.0).xxx, (0.0).xxx, (0.0).xxx);
-        Vol_in_PanelEnd _e26 = panels.starts[0u];
-        start = _e26;
-        stop = ConstructVol_in_PanelEnd(nothing, (0.0).xxx, _e15.y, (_e14.next < 0.0));
-        const uint2 _e36 = vol_in_new_ends(own_8, _e14);
-        end_11 = _e36.x;
-        uint2 loop_bound_32 = uint2(4294967295u, 4294967295u);
-        bool loop_init_31 = true;
-        while(true) {
-            if (all(loop_bound_32 == uint2(0u, 0u))) { break; }
-            loop_bound_32 -= uint2(loop_bound_32.y == 0u, 1u);
-            if (!loop_init_31) {
-                uint _e60 = end_11;
-                end_11 = (_e60 + 1u);
-            }
-            loop_init_31 = false;
-            uint _e39 = end_11;
-            if ((_e39 < _e36.y)) {
-            } else {
-                break;
-            }
-            {
-                uint _e44 = end_11;
-                float distance_14 = ((_e44 == VOL_IN_STOP_END) ? _e15.y : _e15.x);
-                const float3 _e48 = vol_in_ray_at(ray_32, distance_14);
-                const Vol_in_Interior _e49 = vol_in_medium_interior(0u, _e48);
-                uint _e50 = end_11;
-                if ((_e50 == VOL_IN_STOP_END)) {
-                    stop.interior = _e49;
-                    stop.source = _e49.emission;
-                } else {
-                    start = ConstructVol_in_PanelEnd(_e49, _e49.emission, distance_14, false);
-                }
-            }
-        }
-        const bool _e65 = vol_in_has_panel(comb_12, node_12, t_33, own_8, _e14);
-        if (_e65) {
-            float _e68 = start.interior.density;
-            float _e71 = stop.interior.density;
-            float2 densities_1 = float2(_e68, _e71);
-            const bool2 _e74 = vol_in_open_ends(comb_12, node_12, t_33, own_8, _e14.next);
-            float _e76 = comb_12.step_;
-            const float2 _e80 = vol_in_panel_masses(_e76, (_e15.y - _e15.x), densities_1, _e74);
-            masses = _e80;
-            float3 _e82 = panels.depth;
-            float3 _e85 = start.interior.extinction;
-            float _e87 = masses.x;
-            float3 _e91 = stop.interior.extinction;
-            float _e93 = masses.y;
-            panels.depth = (_e82 + ((_e85 * _e87) + (_e91 * _e93)));
-        }
-        Vol_in_PanelEnd _e99 = start;
-        panels.starts[0u] = _e99;
-        Vol_in_PanelEnd _e102 = stop;
-        panels.stops[0u] = _e102;
-        float2 _e105 = masses;
-        panels.masses[0u] = _e105;
-        bool _e108 = panels.some;
-        float2 _e109 = masses;
-        panels.some = (_e108 | any((_e109 > (0.0).xx)));
-        return;
-    }
-}
-
-bool vol_in_is_end_at(Vol_in_PanelEnd end_12, uint medium_4, uint place_2)
-{
-    return (place_2 == (end_12.is_node ? naga_mod(place_2, 2u) : ((2u + (2u * medium_4)) + naga_mod(place_2, 2u))));
-}
-
-Vol_in_PanelEnd vol_in_panel_end(inout Vol_in_Panels panels_1, uint medium_5, bool at_stop)
-{
-    if (at_stop) {
-        Vol_in_PanelEnd _e5 = panels_1.stops[min(uint(medium_5), 0u)];
-        const Vol_in_PanelEnd vol_in_panelend = _e5;
-        return vol_in_panelend;
-    }
-    Vol_in_PanelEnd _e8 = panels_1.starts[min(uint(medium_5), 0u)];
-    const Vol_in_PanelEnd vol_in_panelend_1 = _e8;
-    return vol_in_panelend_1;
-}
-
-uint vol_in_next_dark_place(inout Vol_in_Panels panels_2, uint first_3)
-{
-    uint next_1 = VOL_IN_PLACES_OF_ENDS;
-    uint place_3 = VOL_IN_PLACES_OF_ENDS;
-    bool dark = (bool)0;
-
-    uint2 loop_bound_33 = uint2(4294967295u, 4294967295u);
-    while(true) {
-        if (all(loop_bound_33 == uint2(0u, 0u))) { break; }
-        loop_bound_33 -= uint2(loop_bound_33.y == 0u, 1u);
-        uint _e6 = place_3;
-        if ((_e6 > 0u)) {
-        } else {
-            break;
-        }
+    if (VOL_IN_SPACED) {
         {
-            uint _e9 = place_3;
-            place_3 = (_e9 - 1u);
-            dark = false;
-            {
-                uint _e15 = place_3;
-                const Vol_in_PanelEnd _e20 = vol_in_panel_end(panels_2, 0u, (naga_mod(_e15, 2u) == VOL_IN_STOP_END));
-                uint _e21 = place_3;
-                const bool _e22 = vol_in_is_end_at(_e20, 0u, _e21);
-                bool _e23 = dark;
-                float2 _e26 = panels_2.masses[0u];
-                dark = (_e23 | (_e22 & any((_e26 > (0.0).xx))));
-            }
-            uint _e33 = place_3;
-            bool _e37 = panels_2.lit_;
-            bool lit_ = ((_e33 == VOL_IN_NODE_BEFORE) & _e37);
-            uint _e39 = next_1;
-            uint _e40 = place_3;
-            uint _e41 = place_3;
-            bool _e43 = dark;
-            next_1 = (((_e41 >= first_3) & (_e43 & !(lit_))) ? _e40 : _e39);
+            int _e4 = widest_1;
+            const uint _e5 = vol_in_medium_word(0u);
+            const float _e8 = vol_frame_word((_e5 + 8u));
+            widest_1 = max(_e4, naga_f2i32(_e8));
         }
     }
-    uint _e48 = next_1;
-    return _e48;
+    int _e11 = widest_1;
+    return _e11;
 }
 
-float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_33, float t_34)
+int naga_mod(int lhs, int rhs) {
+    int divisor = ((lhs == int(-2147483647 - 1) & rhs == -1) | (rhs == 0)) ? 1 : rhs;
+    return lhs - (lhs / divisor) * divisor;
+}
+
+Vol_in_Glow vol_in_gather(Vol_in_Glow before_5, int node_10, Vol_in_Chunk chunk)
+{
+    Vol_in_Glow glow = (Vol_in_Glow)0;
+
+    glow = before_5;
+    const float3 _e5 = vol_in_decay3_(chunk.depth);
+    float3 _e7 = glow.light;
+    float3 _e9 = glow.transmittance;
+    glow.light = (_e7 + (_e9 * chunk.sent));
+    float3 _e15 = glow.transmittance;
+    glow.transmittance = (_e15 * _e5);
+    if ((naga_mod(node_10, int(2)) == int(0))) {
+        float3 twice = (chunk.sent * ((1.0).xxx + _e5));
+        float3 _e27 = glow.coarse_light;
+        float3 _e29 = glow.coarse_transmittance;
+        glow.coarse_light = (_e27 + (_e29 * twice));
+        float3 _e34 = glow.coarse_transmittance;
+        glow.coarse_transmittance = (_e34 * (_e5 * _e5));
+    }
+    Vol_in_Glow _e37 = glow;
+    const Vol_in_Glow vol_in_glow_1 = _e37;
+    return vol_in_glow_1;
+}
+
+float vol_in_styled_share(Vol_in_Arriving lamp_2, uint light_2, inout Vol_in_StyledRays rays, Vol_in_Ray ray_28, float t_29)
 {
     return 1.0;
 }
 
-float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_34, float t_35, inout float3 scatter[1])
+float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_in_StyledRays styled, Vol_in_Ray ray_29, float t_30, inout float3 scatter[1])
 {
     bool asked = false;
     float part_2 = 1.0;
-    bool local_6 = (bool)0;
+    bool local_8 = (bool)0;
 
     {
         float3 _e10 = scatter[0u];
@@ -4287,19 +3980,19 @@ float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_i
     }
     bool _e22 = asked;
     if ((_e22 & lamp_3.shadows)) {
-        const float3 _e25 = vol_in_ray_at(ray_34, t_35);
+        const float3 _e25 = vol_in_ray_at(ray_29, t_30);
         const Vol_in_Ray _e27 = vol_in_new_ray(_e25, lamp_3.direction);
         if (VOL_IN_STYLES) {
-            local_6 = (lamp_3.style != 0u);
+            local_8 = (lamp_3.style != 0u);
         } else {
-            local_6 = false;
+            local_8 = false;
         }
-        bool _e37 = local_6;
+        bool _e37 = local_8;
         if (_e37) {
-            const float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_34, t_35);
+            const float _e38 = vol_in_styled_share(lamp_3, light_3, styled, ray_29, t_30);
             part_2 = _e38;
         } else {
-            const float _e40 = vol_in_shadow_bias(t_35);
+            const float _e40 = vol_in_shadow_bias(t_30);
             const float _e41 = vol_in_unblocked(_e27, lamp_3.distance_, _e40);
             part_2 = _e41;
         }
@@ -4310,7 +4003,7 @@ float3 vol_in_place_visibility(Vol_in_Arriving lamp_3, uint light_3, inout Vol_i
     return (1.0).xxx;
 }
 
-float3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, float3 point_6)
+float3 vol_in_styled_tint(Vol_in_Arriving lamp_4, uint light_4, inout Vol_in_StyledRays rays_1, float3 point_5)
 {
     return (1.0).xxx;
 }
@@ -4330,12 +4023,12 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, float3 seen_1, float3 directio
     {
         const uint _e8 = vol_in_medium_word(0u);
         const float _e9 = vol_frame_word(_e8);
-        float3 part_7 = scatter_1[0u];
-        if ((any((part_7 > (0.0).xxx)) & (_e9 > VOL_IN_UNLIT))) {
+        float3 part_6 = scatter_1[0u];
+        if ((any((part_6 > (0.0).xxx)) & (_e9 > VOL_IN_UNLIT))) {
             const float _e21 = vol_in_medium_phase(0u, _e6.x, _e6.y);
             float3 arrives = ((_e9 == VOL_IN_UNSHADOWED) ? (1.0).xxx : seen_1);
             float3 _e28 = source[0u];
-            source[0u] = (_e28 + ((part_7 * _e21) * (lamp_5.irradiance * arrives)));
+            source[0u] = (_e28 + ((part_6 * _e21) * (lamp_5.irradiance * arrives)));
             return;
         } else {
             return;
@@ -4343,24 +4036,24 @@ void vol_in_scatter_light(Vol_in_Arriving lamp_5, float3 seen_1, float3 directio
     }
 }
 
-void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays styled_1, inout float3 scatter_2[1], inout float3 source_1[1])
+void vol_in_light_place(Vol_in_Ray ray_30, float t_31, inout Vol_in_StyledRays styled_1, inout float3 scatter_2[1], inout float3 source_1[1])
 {
     uint light_5 = 0u;
     float3 seen_2 = (float3)0;
-    bool local_7 = (bool)0;
+    bool local_9 = (bool)0;
 
-    const float3 _e5 = vol_in_ray_at(ray_35, t_36);
+    const float3 _e5 = vol_in_ray_at(ray_30, t_31);
     const uint _e6 = vol_in_light_count();
-    uint2 loop_bound_34 = uint2(4294967295u, 4294967295u);
-    bool loop_init_32 = true;
+    uint2 loop_bound_31 = uint2(4294967295u, 4294967295u);
+    bool loop_init_31 = true;
     while(true) {
-        if (all(loop_bound_34 == uint2(0u, 0u))) { break; }
-        loop_bound_34 -= uint2(loop_bound_34.y == 0u, 1u);
-        if (!loop_init_32) {
+        if (all(loop_bound_31 == uint2(0u, 0u))) { break; }
+        loop_bound_31 -= uint2(loop_bound_31.y == 0u, 1u);
+        if (!loop_init_31) {
             uint _e31 = light_5;
             light_5 = (_e31 + 1u);
         }
-        loop_init_32 = false;
+        loop_init_31 = false;
         uint _e9 = light_5;
         if ((_e9 < _e6)) {
         } else {
@@ -4370,14 +4063,14 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays s
             uint _e11 = light_5;
             const Vol_in_Arriving _e12 = vol_in_arriving(_e11, _e5);
             uint _e13 = light_5;
-            const float3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_35, t_36, scatter_2);
+            const float3 _e14 = vol_in_place_visibility(_e12, _e13, styled_1, ray_30, t_31, scatter_2);
             seen_2 = _e14;
             if (VOL_IN_STYLES) {
-                local_7 = (_e12.style != 0u);
+                local_9 = (_e12.style != 0u);
             } else {
-                local_7 = false;
+                local_9 = false;
             }
-            bool _e23 = local_7;
+            bool _e23 = local_9;
             if (_e23) {
                 float3 _e24 = seen_2;
                 uint _e25 = light_5;
@@ -4385,133 +4078,10 @@ void vol_in_light_place(Vol_in_Ray ray_35, float t_36, inout Vol_in_StyledRays s
                 seen_2 = (_e24 * _e26);
             }
             float3 _e28 = seen_2;
-            vol_in_scatter_light(_e12, _e28, ray_35.direction, scatter_2, source_1);
+            vol_in_scatter_light(_e12, _e28, ray_30.direction, scatter_2, source_1);
         }
     }
     return;
-}
-
-typedef float3 ret_ZeroValuearray1_float3_[1];
-ret_ZeroValuearray1_float3_ ZeroValuearray1_float3_() {
-    return (float3[1])0;
-}
-
-bool vol_in_light_ends(Vol_in_Ray ray_36, inout Vol_in_StyledRays styled_2, inout Vol_in_Panels panels_3)
-{
-    bool lit_after = false;
-    uint place_4 = (uint)0;
-    float distance_10 = (float)0;
-    float3 scatter_3[1] = (float3[1])0;
-    float3 source_2[1] = (float3[1])0;
-
-    const uint _e6 = vol_in_next_dark_place(panels_3, 0u);
-    place_4 = _e6;
-    uint2 loop_bound_35 = uint2(4294967295u, 4294967295u);
-    while(true) {
-        if (all(loop_bound_35 == uint2(0u, 0u))) { break; }
-        loop_bound_35 -= uint2(loop_bound_35.y == 0u, 1u);
-        uint _e8 = place_4;
-        if ((_e8 < VOL_IN_PLACES_OF_ENDS)) {
-        } else {
-            break;
-        }
-        {
-            uint _e11 = place_4;
-            bool at_stop_2 = (naga_mod(_e11, 2u) == VOL_IN_STOP_END);
-            distance_10 = 0.0;
-            scatter_3 = ZeroValuearray1_float3_();
-            source_2 = ZeroValuearray1_float3_();
-            {
-                const Vol_in_PanelEnd _e23 = vol_in_panel_end(panels_3, 0u, at_stop_2);
-                uint _e24 = place_4;
-                const bool _e25 = vol_in_is_end_at(_e23, 0u, _e24);
-                scatter_3[0u] = (_e25 ? _e23.interior.scattering : (0.0).xxx);
-                source_2[0u] = _e23.source;
-                float _e34 = distance_10;
-                distance_10 = (_e25 ? _e23.distance_ : _e34);
-            }
-            float _e37 = distance_10;
-            vol_in_light_place(ray_36, _e37, styled_2, scatter_3, source_2);
-            {
-                if (at_stop_2) {
-                    float3 _e43 = source_2[0u];
-                    panels_3.stops[0u].source = _e43;
-                } else {
-                    float3 _e48 = source_2[0u];
-                    panels_3.starts[0u].source = _e48;
-                }
-            }
-            bool _e49 = lit_after;
-            uint _e50 = place_4;
-            lit_after = (_e49 | (_e50 == VOL_IN_NODE_AFTER));
-            uint _e54 = place_4;
-            const uint _e57 = vol_in_next_dark_place(panels_3, (_e54 + 1u));
-            place_4 = _e57;
-        }
-    }
-    bool _e58 = lit_after;
-    return _e58;
-}
-
-int naga_mod(int lhs, int rhs) {
-    int divisor = ((lhs == int(-2147483647 - 1) & rhs == -1) | (rhs == 0)) ? 1 : rhs;
-    return lhs - (lhs / divisor) * divisor;
-}
-
-Vol_in_Glow vol_in_gather(Vol_in_Glow before_6, int node_13, Vol_in_Chunk chunk)
-{
-    Vol_in_Glow glow = (Vol_in_Glow)0;
-
-    glow = before_6;
-    const float3 _e5 = vol_in_decay3_(chunk.depth);
-    float3 _e7 = glow.light;
-    float3 _e9 = glow.transmittance;
-    glow.light = (_e7 + (_e9 * chunk.sent));
-    float3 _e15 = glow.transmittance;
-    glow.transmittance = (_e15 * _e5);
-    if ((naga_mod(node_13, int(2)) == int(0))) {
-        float3 twice = (chunk.sent * ((1.0).xxx + _e5));
-        float3 _e27 = glow.coarse_light;
-        float3 _e29 = glow.coarse_transmittance;
-        glow.coarse_light = (_e27 + (_e29 * twice));
-        float3 _e34 = glow.coarse_transmittance;
-        glow.coarse_transmittance = (_e34 * (_e5 * _e5));
-    }
-    Vol_in_Glow _e37 = glow;
-    const Vol_in_Glow vol_in_glow_1 = _e37;
-    return vol_in_glow_1;
-}
-
-float3 vol_in_panel_sent(float2 masses_1, float3 start_1, float3 end_13, float3 depth_5)
-{
-    const float3 _e4 = vol_in_mean_decay3_(depth_5);
-    float3 steady = (start_1 * _e4);
-    const float3 _e7 = vol_in_decay_moment3_(depth_5);
-    float3 change = ((end_13 - start_1) * _e7);
-    float3 thick = ((steady + change) * (masses_1.x + masses_1.y));
-    const float3 _e16 = vol_in_decay3_(depth_5);
-    float3 thin = ((start_1 * masses_1.x) + ((end_13 * _e16) * masses_1.y));
-    float3 rise_4 = min(max(((depth_5 - (0.125).xxx) * 2.6666667), (0.0).xxx), (1.0).xxx);
-    return (thin + ((thick - thin) * rise_4));
-}
-
-float3 vol_in_panels_sent(inout Vol_in_Panels panels_4)
-{
-    float3 sent = (0.0).xxx;
-
-    float3 depth_8 = panels_4.depth;
-    {
-        float2 masses_2 = panels_4.masses[0u];
-        if (any((masses_2 > (0.0).xx))) {
-            float3 _e14 = sent;
-            float3 _e18 = panels_4.starts[0u].source;
-            float3 _e22 = panels_4.stops[0u].source;
-            const float3 _e23 = vol_in_panel_sent(masses_2, _e18, _e22, depth_8);
-            sent = (_e14 + _e23);
-        }
-    }
-    float3 _e25 = sent;
-    return _e25;
 }
 
 Vol_in_Chunk ConstructVol_in_Chunk(float3 arg0, float3 arg1) {
@@ -4521,188 +4091,121 @@ Vol_in_Chunk ConstructVol_in_Chunk(float3 arg0, float3 arg1) {
     return ret;
 }
 
-Vol_in_Glow vol_in_march_panels(Vol_in_Ray ray_37, float end_14)
+Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_31, float t_32, inout Vol_in_StyledRays styled_2, inout float weights_1[1], inout Vol_in_Interior interiors[1])
 {
-    Vol_in_Glow glow_1 = (Vol_in_Glow)0;
-    Vol_in_StyledRays styled_3 = (Vol_in_StyledRays)0;
-    Vol_in_Comb comb_13 = (Vol_in_Comb)0;
-    Vol_in_Panels panels_5 = (Vol_in_Panels)0;
-    int node_14 = (int)0;
-    bool lit_after_1 = (bool)0;
+    float3 depth_2 = (0.0).xxx;
+    float3 scatter_3[1] = (float3[1])0;
+    float3 source_2[1] = (float3[1])0;
+    float3 sent = (0.0).xxx;
 
-    const Vol_in_Glow _e2 = vol_in_clear_glow();
-    glow_1 = _e2;
-    const Vol_in_StyledRays _e4 = vol_in_style_rays(ray_37, end_14);
-    styled_3 = _e4;
-    const float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    const Vol_in_Comb _e8 = vol_in_new_comb(ray_37, end_14, _e7);
-    comb_13 = _e8;
-    int _e12 = comb_13.first;
-    node_14 = asint(asuint(_e12) - asuint(int(1)));
-    uint2 loop_bound_36 = uint2(4294967295u, 4294967295u);
-    bool loop_init_33 = true;
-    while(true) {
-        if (all(loop_bound_36 == uint2(0u, 0u))) { break; }
-        loop_bound_36 -= uint2(loop_bound_36.y == 0u, 1u);
-        if (!loop_init_33) {
-            int _e54 = node_14;
-            const int _e56 = vol_in_next_node(comb_13, _e54, int(1));
-            node_14 = _e56;
-        }
-        loop_init_33 = false;
-        int _e16 = node_14;
-        int _e18 = comb_13.last;
-        if ((_e16 <= _e18)) {
-        } else {
-            break;
-        }
-        {
-            int _e20 = node_14;
-            const float _e21 = vol_in_panel_node(comb_13, _e20);
-            int _e22 = node_14;
-            const float _e25 = vol_in_panel_node(comb_13, asint(asuint(_e22) + asuint(int(1))));
-            float2 t_41 = float2(_e21, _e25);
-            int _e27 = node_14;
-            vol_in_find_panels(ray_37, comb_13, _e27, t_41, panels_5);
-            lit_after_1 = false;
-            bool _e31 = panels_5.some;
-            if (_e31) {
-                if (VOL_IN_LIT_MEDIA) {
-                    const bool _e33 = vol_in_light_ends(ray_37, styled_3, panels_5);
-                    lit_after_1 = _e33;
-                }
-                Vol_in_Glow _e34 = glow_1;
-                int _e35 = node_14;
-                const float3 _e36 = vol_in_panels_sent(panels_5);
-                float3 _e38 = panels_5.depth;
-                const Vol_in_Glow _e40 = vol_in_gather(_e34, _e35, ConstructVol_in_Chunk(_e36, _e38));
-                glow_1 = _e40;
-            }
-            float3 _e42 = glow_1.transmittance;
-            const float _e43 = vol_in_largest(_e42);
-            if ((_e43 < VOL_IN_STOP)) {
-                break;
-            }
-            bool _e47 = lit_after_1;
-            panels_5.lit_ = _e47;
-            {
-                Vol_in_PanelEnd _e53 = panels_5.stops[0u];
-                panels_5.starts[0u] = _e53;
-            }
-        }
-    }
-    Vol_in_Glow _e57 = glow_1;
-    const Vol_in_Glow vol_in_glow_2 = _e57;
-    return vol_in_glow_2;
-}
-
-Vol_in_Chunk vol_in_node_chunk(Vol_in_Ray ray_38, float t_37, inout Vol_in_StyledRays styled_4, inout float weights_4[1])
-{
-    float3 depth_6 = (0.0).xxx;
-    float3 scatter_4[1] = (float3[1])0;
-    float3 source_3[1] = (float3[1])0;
-    float3 sent_1 = (0.0).xxx;
-
-    const float3 _e4 = vol_in_ray_at(ray_38, t_37);
     {
-        float weight_2 = weights_4[0u];
-        scatter_4[0u] = (0.0).xxx;
-        source_3[0u] = (0.0).xxx;
-        if ((weight_2 > 0.0)) {
-            const Vol_in_Interior _e21 = vol_in_medium_interior(0u, _e4);
-            float mass_1 = (max(_e21.density, 0.0) * weight_2);
-            float3 _e26 = depth_6;
-            depth_6 = (_e26 + (_e21.extinction * mass_1));
-            scatter_4[0u] = (_e21.scattering * mass_1);
-            source_3[0u] = (_e21.emission * mass_1);
+        float weight_1 = weights_1[0u];
+        scatter_3[0u] = (0.0).xxx;
+        source_2[0u] = (0.0).xxx;
+        if ((weight_1 > 0.0)) {
+            Vol_in_Interior interior = interiors[0u];
+            float mass = (max(interior.density, 0.0) * weight_1);
+            float3 _e27 = depth_2;
+            depth_2 = (_e27 + (interior.extinction * mass));
+            scatter_3[0u] = (interior.scattering * mass);
+            source_2[0u] = (interior.emission * mass);
         }
     }
     if (VOL_IN_LIT_MEDIA) {
-        vol_in_light_place(ray_38, t_37, styled_4, scatter_4, source_3);
+        vol_in_light_place(ray_31, t_32, styled_2, scatter_3, source_2);
     }
     {
-        float3 _e41 = sent_1;
-        float3 _e43 = source_3[0u];
-        float3 _e44 = depth_6;
-        const float3 _e45 = vol_in_mean_decay3_(_e44);
-        sent_1 = (_e41 + (_e43 * _e45));
+        float3 _e42 = sent;
+        float3 _e44 = source_2[0u];
+        float3 _e45 = depth_2;
+        const float3 _e46 = vol_in_mean_decay3_(_e45);
+        sent = (_e42 + (_e44 * _e46));
     }
-    float3 _e48 = sent_1;
-    float3 _e49 = depth_6;
-    const Vol_in_Chunk vol_in_chunk = ConstructVol_in_Chunk(_e48, _e49);
+    float3 _e49 = sent;
+    float3 _e50 = depth_2;
+    const Vol_in_Chunk vol_in_chunk = ConstructVol_in_Chunk(_e49, _e50);
     return vol_in_chunk;
 }
 
-Vol_in_Glow vol_in_march_nodes(Vol_in_Ray ray_39, float end_15)
+Vol_in_Glow vol_in_march(Vol_in_Ray ray_32, float end_8)
 {
-    Vol_in_Glow glow_2 = (Vol_in_Glow)0;
-    Vol_in_StyledRays styled_5 = (Vol_in_StyledRays)0;
-    Vol_in_Comb comb_14 = (Vol_in_Comb)0;
-    float weights_5[1] = (float[1])0;
-    int node_15 = (int)0;
+    Vol_in_Glow glow_1 = (Vol_in_Glow)0;
+    Vol_in_StyledRays styled_3 = (Vol_in_StyledRays)0;
+    Vol_in_Comb comb_15 = (Vol_in_Comb)0;
+    float weights_2[1] = (float[1])0;
+    Vol_in_Interior here[1] = (Vol_in_Interior[1])0;
+    Vol_in_Interior ahead_3[1] = (Vol_in_Interior[1])0;
+    Vol_in_Node node_11 = (Vol_in_Node)0;
+    bool some = (bool)0;
 
     const Vol_in_Glow _e2 = vol_in_clear_glow();
-    glow_2 = _e2;
-    const Vol_in_StyledRays _e4 = vol_in_style_rays(ray_39, end_15);
-    styled_5 = _e4;
+    glow_1 = _e2;
+    const Vol_in_StyledRays _e4 = vol_in_style_rays(ray_32, end_8);
+    styled_3 = _e4;
     const float _e7 = vol_frame_word(VOL_IN_AT_STEP);
-    const Vol_in_Comb _e8 = vol_in_new_comb(ray_39, end_15, _e7);
-    comb_14 = _e8;
-    int _e12 = comb_14.first;
-    node_15 = asint(asuint(_e12) - asuint(int(2)));
-    uint2 loop_bound_37 = uint2(4294967295u, 4294967295u);
-    bool loop_init_34 = true;
+    const int _e8 = vol_in_widest_spacing();
+    const Vol_in_Comb _e9 = vol_in_new_comb(ray_32, end_8, _e7, _e8);
+    comb_15 = _e9;
+    const Vol_in_Node _e15 = vol_in_start_node(comb_15, int(2));
+    node_11 = _e15;
+    uint2 loop_bound_32 = uint2(4294967295u, 4294967295u);
+    bool loop_init_32 = true;
     while(true) {
-        if (all(loop_bound_37 == uint2(0u, 0u))) { break; }
-        loop_bound_37 -= uint2(loop_bound_37.y == 0u, 1u);
-        if (!loop_init_34) {
-            int _e37 = node_15;
-            const int _e39 = vol_in_next_node(comb_14, _e37, int(2));
-            node_15 = _e39;
+        if (all(loop_bound_32 == uint2(0u, 0u))) { break; }
+        loop_bound_32 -= uint2(loop_bound_32.y == 0u, 1u);
+        if (!loop_init_32) {
+            Vol_in_Node _e61 = node_11;
+            const Vol_in_Node _e63 = vol_in_next_node(comb_15, _e61, int(2));
+            node_11 = _e63;
         }
-        loop_init_34 = false;
-        int _e16 = node_15;
-        int _e18 = comb_14.last;
-        if ((_e16 <= _e18)) {
+        loop_init_32 = false;
+        int _e18 = node_11.first;
+        int _e20 = comb_15.last;
+        if ((_e18 <= _e20)) {
         } else {
             break;
         }
         {
-            int _e20 = node_15;
-            const bool _e21 = vol_in_weigh(ray_39, comb_14, _e20, weights_5);
-            if (_e21) {
-                Vol_in_Glow _e22 = glow_2;
-                int _e23 = node_15;
-                int _e24 = node_15;
-                float _e26 = comb_14.step_;
-                float _e28 = comb_14.offset;
-                const float _e29 = vol_in_node_distance(_e24, _e26, _e28);
-                const Vol_in_Chunk _e30 = vol_in_node_chunk(ray_39, _e29, styled_5, weights_5);
-                const Vol_in_Glow _e31 = vol_in_gather(_e22, _e23, _e30);
-                glow_2 = _e31;
+            Vol_in_Node _e22 = node_11;
+            const Vol_in_Node _e23 = vol_in_node_after(comb_15, _e22);
+            some = false;
+            {
+                Vol_in_Node _e28 = node_11;
+                const float _e29 = vol_in_weigh(ray_32, 0u, comb_15, _e28, _e23);
+                weights_2[0u] = _e29;
+                Vol_in_Interior _e32 = ahead_3[0u];
+                here[0u] = _e32;
+                float _e35 = comb_15.own[0u];
+                if ((_e35 < 0.0)) {
+                    const float _e39 = vol_in_middle_of(comb_15, _e23);
+                    const float3 _e40 = vol_in_ray_at(ray_32, _e39);
+                    const Vol_in_Interior _e41 = vol_in_medium_interior(0u, _e40);
+                    ahead_3[0u] = _e41;
+                }
+                bool _e42 = some;
+                float _e44 = weights_2[0u];
+                some = (_e42 | (_e44 > 0.0));
             }
-            float3 _e33 = glow_2.transmittance;
-            const float _e34 = vol_in_largest(_e33);
-            if ((_e34 < VOL_IN_STOP)) {
+            bool _e48 = some;
+            if (_e48) {
+                Vol_in_Glow _e49 = glow_1;
+                int _e51 = node_11.number;
+                Vol_in_Node _e52 = node_11;
+                const float _e53 = vol_in_middle_of(comb_15, _e52);
+                const Vol_in_Chunk _e54 = vol_in_node_chunk(ray_32, _e53, styled_3, weights_2, here);
+                const Vol_in_Glow _e55 = vol_in_gather(_e49, _e51, _e54);
+                glow_1 = _e55;
+            }
+            float3 _e57 = glow_1.transmittance;
+            const float _e58 = vol_in_largest(_e57);
+            if ((_e58 < VOL_IN_STOP)) {
                 break;
             }
         }
     }
-    Vol_in_Glow _e40 = glow_2;
-    const Vol_in_Glow vol_in_glow_3 = _e40;
-    return vol_in_glow_3;
-}
-
-Vol_in_Glow vol_in_march(Vol_in_Ray ray_40, float end_16)
-{
-    if (VOL_IN_CORRECTED) {
-        const Vol_in_Glow _e3 = vol_in_march_panels(ray_40, end_16);
-        const Vol_in_Glow vol_in_glow_4 = _e3;
-        return vol_in_glow_4;
-    }
-    const Vol_in_Glow _e4 = vol_in_march_nodes(ray_40, end_16);
-    const Vol_in_Glow vol_in_glow_5 = _e4;
-    return vol_in_glow_5;
+    Vol_in_Glow _e64 = glow_1;
+    const Vol_in_Glow vol_in_glow_2 = _e64;
+    return vol_in_glow_2;
 }
 
 Vol_in_Radiance ConstructVol_in_Radiance(float3 arg0, float3 arg1, float arg2, float arg3) {
@@ -4714,50 +4217,50 @@ Vol_in_Radiance ConstructVol_in_Radiance(float3 arg0, float3 arg1, float arg2, f
     return ret;
 }
 
-Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_41)
+Vol_in_Radiance vol_in_radiance(Vol_in_Ray ray_33)
 {
     float3 behind = (float3)0;
-    float end_17 = VOL_IN_FAR;
-    float depth_7 = VOL_IN_NO_DEPTH;
+    float end_9 = VOL_IN_FAR;
+    float depth_3 = VOL_IN_NO_DEPTH;
 
-    const Vol_in_Contact _e1 = vol_in_trace(ray_41);
+    const Vol_in_Contact _e1 = vol_in_trace(ray_33);
     const float3 _e3 = vol_in_word3_(VOL_IN_AT_BACKGROUND);
     behind = _e3;
     if (_e1.hit) {
-        const float3 _e10 = vol_in_shade(ray_41, _e1);
+        const float3 _e10 = vol_in_shade(ray_33, _e1);
         behind = _e10;
-        end_17 = _e1.t;
+        end_9 = _e1.t;
         const float3 _e15 = vol_in_word3_(VOL_IN_AT_FORWARD);
-        const float _e16 = vol_in_dot3_(ray_41.direction, _e15);
-        depth_7 = (_e1.t * _e16);
+        const float _e16 = vol_in_dot3_(ray_33.direction, _e15);
+        depth_3 = (_e1.t * _e16);
     }
-    float _e18 = end_17;
-    const Vol_in_Glow _e19 = vol_in_march(ray_41, _e18);
+    float _e18 = end_9;
+    const Vol_in_Glow _e19 = vol_in_march(ray_33, _e18);
     float3 _e22 = behind;
     float3 coarse = (_e19.coarse_light + (_e19.coarse_transmittance * _e22));
     float3 _e27 = behind;
     float3 color_2 = (_e19.light + (_e19.transmittance * _e27));
     const float _e31 = vol_in_length3_((coarse - color_2));
     float doubt = (_e31 * VOL_IN_ROOT_THIRD);
-    float _e39 = depth_7;
+    float _e39 = depth_3;
     const Vol_in_Radiance vol_in_radiance_1 = ConstructVol_in_Radiance(color_2, (_e1.hit ? (0.0).xxx : _e19.transmittance), _e39, doubt);
     return vol_in_radiance_1;
 }
 
 float2 vol_in_place_in_pixel(uint index_19)
 {
-    uint step_3 = naga_div((index_19 + 1u), 2u);
-    uint signed_ = ((naga_mod(index_19, 2u) == 1u) ? step_3 : (0u - step_3));
-    uint2 place_13 = ((((signed_).xx * VOL_IN_STRIDE) + (2147483648u).xx) >> (16u).xx);
-    return (float2(place_13) * 1.5258789e-5);
+    uint step_7 = naga_div((index_19 + 1u), 2u);
+    uint signed_ = ((naga_mod(index_19, 2u) == 1u) ? step_7 : (0u - step_7));
+    uint2 place_10 = ((((signed_).xx * VOL_IN_STRIDE) + (2147483648u).xx) >> (16u).xx);
+    return (float2(place_10) * 1.5258789e-5);
 }
 
-Vol_in_Ray vol_in_camera_ray(float2 place_5)
+Vol_in_Ray vol_in_camera_ray(float2 place_2)
 {
     const float _e5 = vol_frame_word(VOL_IN_AT_SIZE);
-    float u_5 = (((2.0 * place_5.x) / _e5) - 1.0);
+    float u_5 = (((2.0 * place_2.x) / _e5) - 1.0);
     const float _e13 = vol_frame_word(5u);
-    float v_8 = (1.0 - ((2.0 * place_5.y) / _e13));
+    float v_8 = (1.0 - ((2.0 * place_2.y) / _e13));
     const float3 _e18 = vol_in_word3_(VOL_IN_AT_FORWARD);
     const float3 _e20 = vol_in_word3_(VOL_IN_AT_RIGHT);
     float3 sideways = (_e18 + (_e20 * u_5));
@@ -4772,38 +4275,38 @@ Vol_in_Ray vol_in_camera_ray(float2 place_5)
 
 float vol_in_comb_shift(uint2 pixel, uint index_20)
 {
-    uint place_14 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
-    return ((float(((place_14 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
+    uint place_11 = (((pixel.x * 3242174889u) + (pixel.y * 2447445414u)) + (index_20 * VOL_IN_GOLDEN_STRIDE));
+    return ((float(((place_11 + 2147483648u) >> 16u)) * 1.5258789e-5) - 0.5);
 }
 
 Vol_in_Ray vol_in_pixel_ray(uint2 pixel_1, uint index_21, uint corner)
 {
-    Vol_in_Ray ray_42 = (Vol_in_Ray)0;
+    Vol_in_Ray ray_34 = (Vol_in_Ray)0;
 
     bool is_probe = (corner < VOL_IN_NO_CORNER);
     const float2 _e5 = vol_in_place_in_pixel(index_21);
     float2 aside_2 = (is_probe ? float2(uint2(naga_mod(corner, 2u), naga_div(corner, 2u))) : _e5);
     const Vol_in_Ray _e15 = vol_in_camera_ray((float2(pixel_1) + aside_2));
-    ray_42 = _e15;
+    ray_34 = _e15;
     const float _e18 = vol_in_comb_shift(pixel_1, index_21);
-    ray_42.shift = (is_probe ? 0.0 : _e18);
-    Vol_in_Ray _e21 = ray_42;
+    ray_34.shift = (is_probe ? 0.0 : _e18);
+    Vol_in_Ray _e21 = ray_34;
     const Vol_in_Ray vol_in_ray_3 = _e21;
     return vol_in_ray_3;
 }
 
-Vol_in_Mean vol_in_add_probe(Vol_in_Mean old, Vol_in_Radiance probe_1)
+Vol_in_Mean vol_in_add_probe(Vol_in_Mean old, Vol_in_Radiance probe)
 {
     Vol_in_Mean mean_2 = (Vol_in_Mean)0;
 
     mean_2 = old;
     float3 _e5 = mean_2.color;
-    float3 color_3 = (probe_1.color - _e5);
+    float3 color_3 = (probe.color - _e5);
     float _e9 = mean_2.color_spread;
     const float _e10 = vol_in_dot3_(color_3, color_3);
     mean_2.color_spread = (_e9 + _e10);
     float3 _e14 = mean_2.transmittance;
-    float3 transmittance_1 = (probe_1.transmittance - _e14);
+    float3 transmittance_1 = (probe.transmittance - _e14);
     float _e18 = mean_2.transmittance_spread;
     const float _e19 = vol_in_dot3_(transmittance_1, transmittance_1);
     mean_2.transmittance_spread = (_e18 + _e19);
@@ -4858,48 +4361,48 @@ Vol_in_Mean vol_in_add_sample(Vol_in_Mean old_1, Vol_in_Radiance sample_)
 
 bool vol_in_is_probed()
 {
-    bool local_8 = (bool)0;
+    bool local_10 = (bool)0;
 
     const float _e1 = vol_frame_word(VOL_IN_AT_TOLERANCE);
     if ((_e1 > 0.0)) {
         const float _e7 = vol_frame_word(VOL_IN_AT_SAMPLES);
-        local_8 = (naga_f2u32(_e7) > VOL_IN_FIRST_ROUND);
+        local_10 = (naga_f2u32(_e7) > VOL_IN_FIRST_ROUND);
     } else {
-        local_8 = false;
+        local_10 = false;
     }
-    bool _e12 = local_8;
+    bool _e12 = local_10;
     return _e12;
 }
 
-Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_7, uint last_4)
+Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_6, uint last_3)
 {
     Vol_in_Mean mean_4 = (Vol_in_Mean)0;
     uint corner_1 = VOL_IN_NO_CORNER;
-    bool local_9 = (bool)0;
-    bool local_10 = (bool)0;
     bool local_11 = (bool)0;
+    bool local_12 = (bool)0;
+    bool local_13 = (bool)0;
 
-    mean_4 = before_7;
-    uint2 loop_bound_38 = uint2(4294967295u, 4294967295u);
+    mean_4 = before_6;
+    uint2 loop_bound_33 = uint2(4294967295u, 4294967295u);
     while(true) {
-        if (all(loop_bound_38 == uint2(0u, 0u))) { break; }
-        loop_bound_38 -= uint2(loop_bound_38.y == 0u, 1u);
+        if (all(loop_bound_33 == uint2(0u, 0u))) { break; }
+        loop_bound_33 -= uint2(loop_bound_33.y == 0u, 1u);
         uint _e6 = corner_1;
         if (!((_e6 < VOL_IN_NO_CORNER))) {
             uint _e13 = mean_4.count;
-            if ((_e13 < last_4)) {
+            if ((_e13 < last_3)) {
                 Vol_in_Mean _e17 = mean_4;
                 const bool _e18 = vol_in_is_done(_e17);
-                local_10 = !(_e18);
+                local_12 = !(_e18);
             } else {
-                local_10 = false;
+                local_12 = false;
             }
-            bool _e21 = local_10;
-            local_9 = _e21;
+            bool _e21 = local_12;
+            local_11 = _e21;
         } else {
-            local_9 = true;
+            local_11 = true;
         }
-        bool _e23 = local_9;
+        bool _e23 = local_11;
         if (_e23) {
         } else {
             break;
@@ -4924,11 +4427,11 @@ Vol_in_Mean vol_in_sample_pixel(uint2 pixel_2, Vol_in_Mean before_7, uint last_4
                 const bool _e41 = vol_in_is_probed();
                 if (_e41) {
                     uint _e45 = mean_4.count;
-                    local_11 = (_e45 == VOL_IN_FIRST_ROUND);
+                    local_13 = (_e45 == VOL_IN_FIRST_ROUND);
                 } else {
-                    local_11 = false;
+                    local_13 = false;
                 }
-                bool _e49 = local_11;
+                bool _e49 = local_13;
                 corner_1 = (_e49 ? 0u : VOL_IN_NO_CORNER);
             }
         }
@@ -4962,17 +4465,17 @@ float4 vol_radiance(float3 origin_1, float3 direction_4)
     const float _e2 = vol_in_length3_(direction_4);
     const Vol_in_Ray _e5 = vol_in_new_ray(origin_1, (direction_4 / (_e2).xxx));
     const Vol_in_Radiance _e6 = vol_in_radiance(_e5);
-    float3 t_42 = _e6.transmittance;
-    float clear_3 = (((t_42.x + t_42.y) + t_42.z) * 0.33333334);
+    float3 t_35 = _e6.transmittance;
+    float clear_3 = (((t_35.x + t_35.y) + t_35.z) * 0.33333334);
     return float4(_e6.color, (1.0 - clear_3));
 }
 
-float4 vol_pixel(float2 place_6)
+float4 vol_pixel(float2 place_3)
 {
-    const Vol_in_Ray _e1 = vol_in_camera_ray(place_6);
+    const Vol_in_Ray _e1 = vol_in_camera_ray(place_3);
     const Vol_in_Radiance _e2 = vol_in_radiance(_e1);
-    float3 t_43 = _e2.transmittance;
-    float clear_4 = (((t_43.x + t_43.y) + t_43.z) * 0.33333334);
+    float3 t_36 = _e2.transmittance;
+    float clear_4 = (((t_36.x + t_36.y) + t_36.z) * 0.33333334);
     return float4(_e2.color, (1.0 - clear_4));
 }
 

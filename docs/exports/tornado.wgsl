@@ -145,8 +145,8 @@ var<private> vol_frame: array<vec4<f32>, 43> = array<vec4<f32>, 43>(
   vec4<f32>(1.0f, 0.0f, 1.0f, 3.0f),
   vec4<f32>((-0.60002863f), (-0.60002863f), (-0.60002863f), 1.000029f),
   vec4<f32>(2.8000307f, 0.8000288f, 16.0f, 1.0f),
-  vec4<f32>((-0.42399916f), 0.8479983f, 0.31799936f, 12.0f),
-  vec4<f32>(12.0f, 12.0f, 1.0f, 0.0f),
+  vec4<f32>(1.0f, (-0.42399916f), 0.8479983f, 0.31799936f),
+  vec4<f32>(12.0f, 12.0f, 12.0f, 1.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
@@ -154,31 +154,31 @@ var<private> vol_frame: array<vec4<f32>, 43> = array<vec4<f32>, 43>(
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
   vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
-  vec4<f32>(0.0f, 0.0f, 0.0f, (-0.07849332f)),
-  vec4<f32>((-0.03100111f), (-0.08124195f), 0.12536836f, 0.16850124f),
-  vec4<f32>(0.10467947f, (-0.038403668f), 0.107851274f, (-0.064069755f)),
-  vec4<f32>(0.1727788f, 0.3046489f, 0.13125731f, (-0.008553555f)),
-  vec4<f32>(0.24621235f, (-0.05407174f), 0.21792875f, 0.44128785f),
-  vec4<f32>(0.15875934f, 0.010998466f, 0.3846571f, (-0.051262047f)),
-  vec4<f32>(0.26087677f, 0.57784307f, 0.18719967f, 0.020236308f),
-  vec4<f32>(0.52379215f, (-0.05564443f), 0.30163896f, 0.71370804f),
-  vec4<f32>(0.21658209f, 0.019191828f, 0.6642433f, (-0.067210674f)),
-  vec4<f32>(0.3401835f, 0.84825695f, 0.24689835f, 0.007948153f),
-  vec4<f32>(0.8066414f, (-0.08580606f), 0.3764272f, 0.98085874f),
-  vec4<f32>(0.27799374f, (-0.0131498f), 0.9516064f, (-0.1115874f)),
-  vec4<f32>(0.41002518f, 1.1108938f, 0.3100251f, (-0.04768115f)),
-  vec4<f32>(1.087319f, (-0.14611875f), 0.44455653f, 1.2501811f),
-  vec4<f32>(0.34455645f, (-0.0956435f), 1.2085621f, (-0.1894001f)),
-  vec4<f32>(0.48001888f, 1.403938f, 0.3815878f, (-0.15293887f)),
-  vec4<f32>(1.3255475f, (-0.23986568f), 0.5123142f, 1.5619527f),
-  vec4<f32>(0.41955334f, (-0.21955688f), 1.4378978f, (-0.29706544f)),
-  vec4<f32>(0.5414322f, 1.7246025f, 0.4580031f, (-0.29523104f)),
-  vec4<f32>(1.5453081f, (-0.36114627f), 0.5671063f, 1.8921922f),
-  vec4<f32>(0.4970839f, (-0.37969407f), 1.6475452f, (-0.43204588f)),
-  vec4<f32>(0.5890693f, 2.0649552f, 0.53673345f, (-0.47268757f)),
-  vec4<f32>(1.7444439f, (-0.5097059f), 0.6070627f, 2.2430565f),
-  vec4<f32>(0.57689345f, (-0.5739689f), 1.8359008f, (-0.5940731f)),
-  vec4<f32>(0.62084395f, 2.4265997f, 0.6175107f, 0.0f),
+  vec4<f32>(0.0f, 0.0f, 0.0f, 0.0f),
+  vec4<f32>((-0.07849332f), (-0.03100111f), (-0.08124195f), 0.12536836f),
+  vec4<f32>(0.16850124f, 0.10467947f, (-0.038403668f), 0.107851274f),
+  vec4<f32>((-0.064069755f), 0.1727788f, 0.3046489f, 0.13125731f),
+  vec4<f32>((-0.008553555f), 0.24621235f, (-0.05407174f), 0.21792875f),
+  vec4<f32>(0.44128785f, 0.15875934f, 0.010998466f, 0.3846571f),
+  vec4<f32>((-0.051262047f), 0.26087677f, 0.57784307f, 0.18719967f),
+  vec4<f32>(0.020236308f, 0.52379215f, (-0.05564443f), 0.30163896f),
+  vec4<f32>(0.71370804f, 0.21658209f, 0.019191828f, 0.6642433f),
+  vec4<f32>((-0.067210674f), 0.3401835f, 0.84825695f, 0.24689835f),
+  vec4<f32>(0.007948153f, 0.8066414f, (-0.08580606f), 0.3764272f),
+  vec4<f32>(0.98085874f, 0.27799374f, (-0.0131498f), 0.9516064f),
+  vec4<f32>((-0.1115874f), 0.41002518f, 1.1108938f, 0.3100251f),
+  vec4<f32>((-0.04768115f), 1.087319f, (-0.14611875f), 0.44455653f),
+  vec4<f32>(1.2501811f, 0.34455645f, (-0.0956435f), 1.2085621f),
+  vec4<f32>((-0.1894001f), 0.48001888f, 1.403938f, 0.3815878f),
+  vec4<f32>((-0.15293887f), 1.3255475f, (-0.23986568f), 0.5123142f),
+  vec4<f32>(1.5619527f, 0.41955334f, (-0.21955688f), 1.4378978f),
+  vec4<f32>((-0.29706544f), 0.5414322f, 1.7246025f, 0.4580031f),
+  vec4<f32>((-0.29523104f), 1.5453081f, (-0.36114627f), 0.5671063f),
+  vec4<f32>(1.8921922f, 0.4970839f, (-0.37969407f), 1.6475452f),
+  vec4<f32>((-0.43204588f), 0.5890693f, 2.0649552f, 0.53673345f),
+  vec4<f32>((-0.47268757f), 1.7444439f, (-0.5097059f), 0.6070627f),
+  vec4<f32>(2.2430565f, 0.57689345f, (-0.5739689f), 1.8359008f),
+  vec4<f32>((-0.5940731f), 0.62084395f, 2.4265997f, 0.6175107f),
 );
 fn vol_frame_word(index: u32) -> f32 { return vol_frame[index >> 2u][index & 3u]; }
 var<private> vol_input: array<vec4<f32>, 1> = array<vec4<f32>, 1>(
@@ -1327,17 +1327,18 @@ const VOL_IN_MEDIUM_SLOTS: u32 = 1u;
 const VOL_IN_LIGHT_SLOTS: u32 = 1u;
 const VOL_IN_TRANSFER_SIZE: u32 = 256u;
 const VOL_IN_OBJECT_WORDS: u32 = 8u;
-const VOL_IN_MEDIUM_WORDS: u32 = 8u;
+const VOL_IN_MEDIUM_WORDS: u32 = 9u;
 const VOL_IN_CELL_WORDS: u32 = 6u;
 const VOL_IN_CELLS_WORDS: u32 = 384u;
 const VOL_IN_LIGHT_WORDS: u32 = 12u;
 const VOL_IN_PIXEL_WORDS: u32 = 15u;
 const VOL_IN_AT_OBJECTS: u32 = 27u;
 const VOL_IN_AT_MEDIA: u32 = 27u;
-const VOL_IN_AT_LIGHTS: u32 = 35u;
-const VOL_IN_AT_CELLS: u32 = 75u;
+const VOL_IN_AT_LIGHTS: u32 = 36u;
+const VOL_IN_AT_CELLS: u32 = 76u;
 const VOL_IN_ROW_WORDS: u32 = 0u;
 const VOL_IN_CORRECTED: bool = false;
+const VOL_IN_SPACED: bool = false;
 const VOL_IN_SOFT_LIGHTS: bool = false;
 const VOL_IN_OCCLUDING_LIGHTS: bool = false;
 const VOL_IN_LIGHT_GRIDS: bool = true;
@@ -2229,90 +2230,6 @@ fn vol_in_blocked(ray: Vol_in_Ray, distance: f32, least: f32) -> bool {
     return inside;
 }
 
-// Integral of the extinction along the ray.
-fn vol_in_optical_depth(ray: Vol_in_Ray, end: f32) -> vec3f {
-    if (VOL_IN_CORRECTED) {
-        return vol_in_depth_by_panels(ray, end);
-    }
-    return vol_in_depth_by_nodes(ray, end);
-}
-
-fn vol_in_depth_by_nodes(ray: Vol_in_Ray, end: f32) -> vec3f {
-    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_SHADOW_STEP));
-    var weights: array<f32, VOL_IN_MEDIUM_SLOTS>;
-    var depth = vec3f(0.0);
-    for (var node = comb.first - 2; node <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
-        // Optical depth of each node, all media together.
-        if (vol_in_weigh(ray, &comb, node, &weights)) {
-            depth += vol_in_node_depth(vol_in_ray_at(ray, vol_in_node_distance(node, comb.step, comb.offset)), &weights);
-        }
-        // Go on while the ray is not dark yet.
-        if (vol_in_smallest(depth) > VOL_IN_OPAQUE) {
-            break;
-        }
-    }
-    return depth;
-}
-
-fn vol_in_node_depth(point: vec3f, weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>) -> vec3f {
-    var depth = vec3f(0.0);
-    {
-        let medium = 0u;
-        let weight = (*weights)[medium];
-        if (weight > 0.0) {
-            let matter = vol_in_medium_extinction(medium, point);
-            depth += matter.yzw * (max(matter.x, 0.0) * weight);
-        }
-    }
-    return depth;
-}
-
-fn vol_in_depth_by_panels(ray: Vol_in_Ray, end: f32) -> vec3f {
-    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_SHADOW_STEP));
-    // Density and extinction of each medium at the node before.
-    var before: array<vec4f, VOL_IN_MEDIUM_SLOTS>;
-    var depth = vec3f(0.0);
-    // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node = vol_in_next_node(&comb, node, 1)) {
-        // Optical depth of each panel, all media together.
-        depth += vol_in_panel_depth(ray, &comb, node, &before);
-        // Go on while the ray is not dark yet.
-        if (vol_in_smallest(depth) > VOL_IN_OPAQUE) {
-            break;
-        }
-    }
-    return depth;
-}
-
-fn vol_in_panel_depth(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i32, before: ptr<function, array<vec4f, VOL_IN_MEDIUM_SLOTS>>) -> vec3f {
-    let step_size = (*comb).step;
-    let t = vec2f(vol_in_panel_node(comb, node), vol_in_panel_node(comb, node + 1));
-    var depth = vec3f(0.0);
-    {
-        let medium = 0u;
-        let own = (*comb).own[medium];
-        let between = vol_in_find_walls(ray, medium, comb, node, t);
-        let stretch = vol_in_panel_stretch(own, t, between);
-        var first = (*before)[medium];
-        var last = vec4f(0.0);
-        // Media are asked at one place of the text, since drivers write it out at each.
-        let ends = vol_in_new_ends(own, between);
-        for (var end = ends.x; end < ends.y; end++) {
-            let at_stop = end == VOL_IN_STOP_END;
-            let matter = vol_in_medium_extinction(medium, vol_in_ray_at(ray, select(stretch.x, stretch.y, at_stop)));
-            first = select(matter, first, at_stop);
-            last = select(last, matter, at_stop);
-        }
-        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
-        if (vol_in_has_panel(comb, node, t, own, between)) {
-            let open = vol_in_open_ends(comb, node, t, own, between.next);
-            let masses = vol_in_panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
-            depth += (first.yzw * masses.x) + (last.yzw * masses.y);
-        }
-    }
-    return depth;
-}
-
 // Optical depth between a light and a point, looked up in the light's grid.
 // Twin: runtime-cpu/src/render/light_grid.rs, which says why.
 
@@ -2660,6 +2577,114 @@ fn vol_in_distance_above(
     return distance;
 }
 
+// How far apart the nodes of a ray are.
+// Twin: runtime-cpu/src/render/spacing.rs, which says why.
+
+// A node, and the steps that it stands for.
+struct Vol_in_Node {
+    first: i32,
+    steps: i32,
+    // Among all nodes of the ray.
+    number: i32,
+}
+
+// The widest spacing of the media: steps of a block.
+fn vol_in_widest_spacing() -> i32 {
+    var widest = 1;
+    if (VOL_IN_SPACED) {
+        {
+            let medium = 0u;
+            widest = max(widest, i32(vol_frame_word(vol_in_medium_word(medium) + 8u)));
+        }
+    }
+    return widest;
+}
+
+fn vol_in_spacing_of(comb: ptr<function, Vol_in_Comb>, medium: u32) -> i32 {
+    if (VOL_IN_SPACED && ((*comb).block > 1)) {
+        return i32(vol_frame_word(vol_in_medium_word(medium) + 8u));
+    }
+    return 1;
+}
+
+// Steps of a node in the block of a step: those of the finest medium that has a run there. Before the first block nodes are as
+// in it.
+fn vol_in_spacing_at(comb: ptr<function, Vol_in_Comb>, step: i32) -> i32 {
+    var spacing = (*comb).block;
+    if (VOL_IN_SPACED) {
+        let first = max(step, 0) & -spacing;
+        let last = f32(first + (spacing - 1));
+        {
+            let medium = 0u;
+            let runs = (*comb).all[medium];
+            let there = any((runs.first <= vec4f(last)) & (runs.last >= vec4f(f32(first))));
+            spacing = select(spacing, min(spacing, vol_in_spacing_of(comb, medium)), there);
+        }
+    }
+    return spacing;
+}
+
+// Distance of a node from the origin of the ray: of the middle of its steps.
+fn vol_in_middle_of(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node) -> f32 {
+    return vol_in_node_distance(node.first, (*comb).step, (*comb).offset + (0.5 * f32(node.steps - 1)));
+}
+
+fn vol_in_is_block_begun(comb: ptr<function, Vol_in_Comb>, step: i32) -> bool {
+    return (step & ((*comb).block - 1)) == 0;
+}
+
+fn vol_in_node_after(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node) -> Vol_in_Node {
+    var after = Vol_in_Node(node.first + node.steps, node.steps, node.number + 1);
+    if (VOL_IN_SPACED && vol_in_is_block_begun(comb, after.first)) {
+        after.steps = vol_in_spacing_at(comb, after.first);
+    }
+    return after;
+}
+
+fn vol_in_node_before(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node) -> Vol_in_Node {
+    var steps = node.steps;
+    if (VOL_IN_SPACED && vol_in_is_block_begun(comb, node.first)) {
+        steps = vol_in_spacing_at(comb, node.first - 1);
+    }
+    return Vol_in_Node(node.first - steps, steps, node.number - 1);
+}
+
+// The node that stands for a step not before another node, with no run between the blocks of the two.
+fn vol_in_node_at(comb: ptr<function, Vol_in_Comb>, known: Vol_in_Node, step: i32) -> Vol_in_Node {
+    if (!VOL_IN_SPACED) {
+        return Vol_in_Node(step, 1, step);
+    }
+    let block = (*comb).block;
+    let own_end = (known.first | (block - 1)) + 1;
+    if (step < own_end) {
+        let more = (step - known.first) / known.steps;
+        return Vol_in_Node(known.first + (more * known.steps), known.steps, known.number + more);
+    }
+    let begin = step & -block;
+    let steps = vol_in_spacing_at(comb, step);
+    let whole = ((own_end - known.first) / known.steps) + ((begin - own_end) / block);
+    let more = (step - begin) / steps;
+    return Vol_in_Node(begin + (more * steps), steps, known.number + (whole + more));
+}
+
+// The node that is a number of nodes before the one that stands for a step, but none before another; as of node_at.
+fn vol_in_node_ahead(comb: ptr<function, Vol_in_Comb>, earliest: Vol_in_Node, step: i32, lead: i32) -> Vol_in_Node {
+    if (!VOL_IN_SPACED) {
+        let first = max(earliest.first, step - lead);
+        return Vol_in_Node(first, 1, first);
+    }
+    var node = earliest;
+    if (step > earliest.first) {
+        node = vol_in_node_at(comb, earliest, step);
+        for (var back = 0; back < lead; back++) {
+            if (node.number > earliest.number) {
+                node = vol_in_node_before(comb, node);
+            }
+        }
+    }
+    return node;
+}
+
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
@@ -2669,17 +2694,20 @@ const VOL_IN_NO_RUN: f32 = 8388608.0;
 
 struct Vol_in_Comb {
     step: f32,
-    // Where node 0 is, in steps.
+    // Where the middle of step 0 is, in steps.
     offset: f32,
+    // Steps that are divided alike; see spacing.wgsl.
+    block: i32,
     end: f32,
-    // Nodes that may be inside some medium.
+    // Steps that may be inside some medium.
     first: i32,
     last: i32,
     // The same for each medium, and of those this run or the next one.
     all: array<Vol_in_Runs, VOL_IN_MEDIUM_SLOTS>,
     runs: array<vec2i, VOL_IN_MEDIUM_SLOTS>,
-    // Signed distances of each medium at the node before and at the next one.
+    // Signed distances of each medium at the node before, how many steps that stands for, and at the next one.
     before: array<f32, VOL_IN_MEDIUM_SLOTS>,
+    steps_before: i32,
     own: array<f32, VOL_IN_MEDIUM_SLOTS>,
 }
 
@@ -2690,9 +2718,11 @@ struct Vol_in_Runs {
     last: vec4f,
 }
 
-// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
-fn vol_in_first_node(shift: f32) -> f32 {
-    return select(0.5 + shift, select(shift, shift - 1.0, shift > 0.0), VOL_IN_CORRECTED);
+// Where the middle of step 0 is, in steps. Panels begin at the origin, so there node 0 is at or before it.
+fn vol_in_first_node(shift: f32, block: i32) -> f32 {
+    let moved = floor(f32(block) * (0.5 + shift));
+    let middle = (0.5 + shift) - (f32(block - 1) - moved);
+    return select(middle, select(shift, shift - 1.0, shift > 0.0), VOL_IN_CORRECTED);
 }
 
 fn vol_in_node_distance(node: i32, step_size: f32, offset: f32) -> f32 {
@@ -2703,11 +2733,11 @@ fn vol_in_medium_word(medium: u32) -> u32 {
     return VOL_IN_AT_MEDIA + (VOL_IN_MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
-// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
-fn vol_in_node_range(ray: Vol_in_Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Vol_in_Comb>) -> vec2i {
+// Steps that may be inside a box; none if the last is less than the first. The box is grown by what a node stands for, so that
+// the neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn vol_in_node_range(ray: Vol_in_Ray, lo: vec3f, hi: vec3f, spacing: i32, comb: ptr<function, Vol_in_Comb>) -> vec2i {
     let step_size = (*comb).step;
-    let reach = vec3f(1.01 * step_size);
+    let reach = vec3f((1.01 * f32(spacing)) * step_size);
     let span = vol_in_slab(ray, lo - reach, hi + reach);
     let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
@@ -2717,10 +2747,11 @@ fn vol_in_node_range(ray: Vol_in_Ray, lo: vec3f, hi: vec3f, comb: ptr<function, 
 }
 
 // Lays out the nodes of the ray up to its end.
-fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32) -> Vol_in_Comb {
+fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32, block: i32) -> Vol_in_Comb {
     var comb: Vol_in_Comb;
     comb.step = step_size;
-    comb.offset = vol_in_first_node(ray.shift);
+    comb.block = block;
+    comb.offset = vol_in_first_node(ray.shift, block);
     comb.end = end;
     comb.first = VOL_IN_NO_NODE;
     comb.last = -1;
@@ -2742,8 +2773,9 @@ fn vol_in_new_comb(ray: Vol_in_Ray, end: f32, step_size: f32) -> Vol_in_Comb {
 // medium without cells.
 fn vol_in_find_runs(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>) -> Vol_in_Runs {
     let at = vol_in_medium_word(medium);
+    let spacing = vol_in_spacing_of(comb, medium);
     var runs = Vol_in_Runs(vec4f(VOL_IN_NO_RUN), vec4f(-1.0));
-    let whole = vol_in_node_range(ray, vol_in_word3(at + 1u), vol_in_word3(at + 4u), comb);
+    let whole = vol_in_node_range(ray, vol_in_word3(at + 1u), vol_in_word3(at + 4u), spacing, comb);
     if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
         return runs;
     }
@@ -2753,7 +2785,7 @@ fn vol_in_find_runs(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Com
     }
     var cell = VOL_IN_AT_CELLS + (VOL_IN_CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let range = vol_in_node_range(ray, vol_in_word3(cell), vol_in_word3(cell + 3u), comb);
+        let range = vol_in_node_range(ray, vol_in_word3(cell), vol_in_word3(cell + 3u), spacing, comb);
         if (range.x <= range.y) {
             runs = vol_in_add_run(runs, range);
         }
@@ -2796,271 +2828,37 @@ fn vol_in_run_from(runs: Vol_in_Runs, node: i32) -> vec2i {
     return vec2i(i32(least), select(end, VOL_IN_NO_NODE, least == VOL_IN_NO_RUN));
 }
 
+// The first node to look at: `lead` before the first of a run. More than the last if there is none.
+fn vol_in_start_node(comb: ptr<function, Vol_in_Comb>, lead: i32) -> Vol_in_Node {
+    let origin = Vol_in_Node(0, vol_in_spacing_at(comb, 0), 0);
+    var before = origin;
+    for (var back = 0; back < lead; back++) {
+        before = vol_in_node_before(comb, before);
+    }
+    return vol_in_node_ahead(comb, before, (*comb).first, lead);
+}
+
 // The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn vol_in_next_node(comb: ptr<function, Vol_in_Comb>, node: i32, lead: i32) -> i32 {
-    let after = node + 1;
+fn vol_in_next_node(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node, lead: i32) -> Vol_in_Node {
+    let after = vol_in_node_after(comb, node);
     var first = VOL_IN_NO_NODE;
     {
         let medium = 0u;
-        if ((*comb).runs[medium].y < after) {
-            (*comb).runs[medium] = vol_in_run_from((*comb).all[medium], after);
+        if ((*comb).runs[medium].y < after.first) {
+            (*comb).runs[medium] = vol_in_run_from((*comb).all[medium], after.first);
         }
         first = min(first, (*comb).runs[medium].x);
     }
-    let next = max(after, first - lead);
+    let next = vol_in_node_ahead(comb, after, first, lead);
     // Distances say nothing about nodes farther on.
+    let is_farther = next.first > after.first;
+    (*comb).steps_before = node.steps;
     {
         let medium = 0u;
-        (*comb).before[medium] = select((*comb).before[medium], VOL_IN_FAR, next > after);
-        (*comb).own[medium] = select((*comb).own[medium], VOL_IN_FAR, next > after);
+        (*comb).before[medium] = select((*comb).before[medium], VOL_IN_FAR, is_farther);
+        (*comb).own[medium] = select((*comb).own[medium], VOL_IN_FAR, is_farther);
     }
     return next;
-}
-
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn vol_in_wall(ray: Vol_in_Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
-    var region = VOL_IN_FAR;
-    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
-        region = vol_in_medium_region(medium, vol_in_ray_at(ray, t));
-    }
-    return max(region, max(t - end, -t));
-}
-
-// Part of the interval between two neighbouring nodes that the first stands for, given the signed
-// distances of both.
-fn vol_in_share(own: f32, other: f32, step_size: f32) -> f32 {
-    let divisor = select(-1.0, own - other, own < other);
-    let part = step_size * (own / divisor);
-    return select(part, 0.5 * step_size, other < 0.0);
-}
-
-// The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before each run: so that regions are asked at one place of the text,
-// since drivers write them out at each.
-fn vol_in_weigh(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i32, weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>) -> bool {
-    var any_inside = false;
-    let step_size = (*comb).step;
-    let t = vol_in_node_distance(node + 1, step_size, (*comb).offset);
-    {
-        let medium = 0u;
-        let before = (*comb).before[medium];
-        let own = (*comb).own[medium];
-        let after = vol_in_wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
-        let weight = vol_in_share(own, before, step_size) + vol_in_share(own, after, step_size);
-        let is_inside = (own < 0.0) & (node >= (*comb).first);
-        (*weights)[medium] = select(0.0, weight, is_inside);
-        any_inside = any_inside | is_inside;
-        (*comb).before[medium] = own;
-        (*comb).own[medium] = after;
-    }
-    return any_inside;
-}
-
-// Short ways of a ray through a medium, between two neighbouring nodes that are outside.
-// Twin: runtime-cpu/src/render/chord.rs, which says why.
-
-const VOL_IN_CHORD_ROUNDS: u32 = 3u;
-const VOL_IN_LEAST_SHARE: f32 = 1e-6;
-
-// Two places outside, between which there may be an inside: distance along the ray and signed distance of each.
-struct Vol_in_Gap {
-    start: vec2f,
-    stop: vec2f,
-}
-
-// Length that may be inside.
-fn vol_in_gap_room(gap: Vol_in_Gap) -> f32 {
-    return (gap.stop.x - gap.start.x) - (gap.start.y + gap.stop.y);
-}
-
-fn vol_in_gap_probe(gap: Vol_in_Gap, round: u32) -> f32 {
-    let length = gap.stop.x - gap.start.x;
-    let least = VOL_IN_LEAST_SHARE * length;
-    let touching = (gap.start.y + least) / ((gap.start.y + gap.stop.y) + (least + least));
-    return gap.start.x + (length * select(0.5, touching, round == 0u));
-}
-
-// What is left after a probe outside.
-fn vol_in_gap_narrowed(gap: Vol_in_Gap, found: vec2f) -> Vol_in_Gap {
-    let first = Vol_in_Gap(gap.start, found);
-    let second = Vol_in_Gap(found, gap.stop);
-    if (vol_in_gap_room(second) > vol_in_gap_room(first)) {
-        return second;
-    }
-    return first;
-}
-
-// The panels of the corrected form: stretches of a ray between two places at which a medium is
-// sampled, and how much matter is in each.
-// Twin: runtime-cpu/src/render/panel.rs, which says why.
-
-const VOL_IN_WALL_ROUNDS: u32 = 5u;
-
-// Distance of a node from the origin of its ray: at least there, and at most at the end.
-fn vol_in_panel_node(comb: ptr<function, Vol_in_Comb>, node: i32) -> f32 {
-    return min(max(vol_in_node_distance(node, (*comb).step, (*comb).offset), 0.0), (*comb).end);
-}
-
-// Whether matter is cut off at each end of a panel after a node: at a wall, or at an end of the ray.
-fn vol_in_open_ends(comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f, own: f32, next: f32) -> vec2<bool> {
-    let is_last = t.y < vol_in_node_distance(node + 1, (*comb).step, (*comb).offset);
-    return vec2<bool>((own >= 0.0) | (node == 0), (next >= 0.0) | is_last);
-}
-
-// Two places of which one is inside: distance along the ray and signed distance of each.
-struct Vol_in_Crossing {
-    inside: vec2f,
-    outside: vec2f,
-    // Which of them was found last: 0 none, 1 the one inside, 2 the other.
-    moved: u32,
-}
-
-// Where the signed distance would be 0 if it were linear between the two.
-fn vol_in_crossing_probe(crossing: Vol_in_Crossing) -> f32 {
-    let inside = crossing.inside;
-    let outside = crossing.outside;
-    return inside.x + ((outside.x - inside.x) * (inside.y / (inside.y - outside.y)));
-}
-
-// Takes the signed distance at the probe into account.
-fn vol_in_crossing_narrowed(crossing: Vol_in_Crossing, found: vec2f) -> Vol_in_Crossing {
-    if (found.y < 0.0) {
-        let kept = vec2f(crossing.outside.x, select(crossing.outside.y, 0.5 * crossing.outside.y, crossing.moved == 1u));
-        return Vol_in_Crossing(found, kept, 1u);
-    }
-    let kept = vec2f(crossing.inside.x, select(crossing.inside.y, 0.5 * crossing.inside.y, crossing.moved == 2u));
-    return Vol_in_Crossing(kept, found, 2u);
-}
-
-// What is probed.
-const VOL_IN_THE_NODE: u32 = 0u;
-const VOL_IN_A_GAP: u32 = 1u;
-const VOL_IN_A_WALL: u32 = 2u;
-const VOL_IN_NO_MORE: u32 = 3u;
-
-// The region of a medium between two nodes.
-struct Vol_in_Between {
-    // Signed distance at the node after.
-    next: f32,
-    // The first and the last wall: there are none, one, or two around a chord.
-    walls: vec2f,
-    count: u32,
-}
-
-// Looks for the node after one at a distance t.x, and for walls between the two. The region is asked at one place of
-// the text, since drivers write it out at each.
-fn vol_in_find_walls(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f) -> Vol_in_Between {
-    let own = (*comb).own[medium];
-    let run = (*comb).runs[medium];
-    let known = ((node + 1) >= run.x) & (node <= run.y);
-    var between = Vol_in_Between(VOL_IN_FAR, vec2f(0.0), 0u);
-    var gap: Vol_in_Gap;
-    var crossing: Vol_in_Crossing;
-    var other: Vol_in_Crossing;
-    var wanted = 0u;
-    var aim = VOL_IN_THE_NODE;
-    var round = 0u;
-    while (aim != VOL_IN_NO_MORE) {
-        // Ask.
-        var probe = t.y;
-        if (aim == VOL_IN_A_GAP) {
-            probe = vol_in_gap_probe(gap, round);
-        } else if (aim == VOL_IN_A_WALL) {
-            probe = vol_in_crossing_probe(crossing);
-        }
-        let point = vol_in_ray_at(ray, probe);
-        var value = VOL_IN_FAR;
-        if ((aim != VOL_IN_THE_NODE) || known) {
-            value = vol_in_medium_region(medium, point);
-        }
-        let found = vec2f(probe, value);
-        round += 1u;
-        // Decide what to ask next.
-        if (aim == VOL_IN_THE_NODE) {
-            between.next = value;
-            let start = vec2f(t.x, own);
-            round = 0u;
-            aim = VOL_IN_NO_MORE;
-            if ((node >= (*comb).first) & (t.x < t.y)) {
-                if ((own < 0.0) != (value < 0.0)) {
-                    crossing = Vol_in_Crossing(select(found, start, own < 0.0), select(start, found, own < 0.0), 0u);
-                    wanted = 1u;
-                    aim = VOL_IN_A_WALL;
-                } else {
-                    gap = Vol_in_Gap(start, found);
-                    let may_enter = (own >= 0.0) & (vol_in_gap_room(gap) > 0.0);
-                    aim = select(VOL_IN_NO_MORE, VOL_IN_A_GAP, may_enter);
-                }
-            }
-        } else if (aim == VOL_IN_A_GAP) {
-            if (value < 0.0) {
-                crossing = Vol_in_Crossing(found, gap.start, 0u);
-                other = Vol_in_Crossing(found, gap.stop, 0u);
-                wanted = 2u;
-                aim = VOL_IN_A_WALL;
-                round = 0u;
-            } else {
-                gap = vol_in_gap_narrowed(gap, found);
-                aim = select(VOL_IN_NO_MORE, VOL_IN_A_GAP, (round < VOL_IN_CHORD_ROUNDS) & (vol_in_gap_room(gap) > 0.0));
-            }
-        } else {
-            crossing = vol_in_crossing_narrowed(crossing, found);
-            if (round == VOL_IN_WALL_ROUNDS) {
-                let wall = vol_in_crossing_probe(crossing);
-                between.walls = select(vec2f(between.walls.x, wall), vec2f(wall), between.count == 0u);
-                between.count += 1u;
-                crossing = other;
-                aim = select(VOL_IN_NO_MORE, VOL_IN_A_WALL, between.count < wanted);
-                round = 0u;
-            }
-        }
-    }
-    (*comb).own[medium] = between.next;
-    return between;
-}
-
-// Whether a medium has a panel between two nodes.
-fn vol_in_has_panel(comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f, own: f32, between: Vol_in_Between) -> bool {
-    let some = (own < 0.0) | (between.next < 0.0) | (between.count > 0u);
-    return (node >= (*comb).first) & (t.x < t.y) & some;
-}
-
-// The two ends of a panel: where it begins, and where it stops.
-const VOL_IN_START_END: u32 = 0u;
-const VOL_IN_STOP_END: u32 = 1u;
-
-// Distances of the ends of a panel between two nodes: those inside, else walls.
-fn vol_in_panel_stretch(own: f32, t: vec2f, between: Vol_in_Between) -> vec2f {
-    return select(between.walls, t, vec2<bool>(own < 0.0, between.next < 0.0));
-}
-
-// From which of the ends on, and before which, the medium has yet to be sampled: at a node inside that a panel begins with
-// it has been.
-fn vol_in_new_ends(own: f32, between: Vol_in_Between) -> vec2u {
-    let has_walls = between.count > 0u;
-    let first = select(VOL_IN_STOP_END, VOL_IN_START_END, (own >= 0.0) & has_walls);
-    return vec2u(first, select(VOL_IN_STOP_END, VOL_IN_STOP_END + 1u, (between.next < 0.0) | has_walls));
-}
-
-// Integral of the positive part of a density over a stretch of a panel as long as a step, by its values at
-// both ends: what each end stands for. An open end is one where matter is cut off.
-fn vol_in_panel_masses(step_size: f32, length: f32, ends: vec2f, open: vec2<bool>) -> vec2f {
-    let half = 0.5 * length;
-    let above = max(ends.x, ends.y);
-    let below = min(ends.x, ends.y);
-    let changes = (above > 0.0) & (below < 0.0);
-    let densities = max(ends, vec2f(0.0));
-    // What the panels up to the node miss: it is given to the node.
-    let rise = select(densities.x - densities.y, densities.y - densities.x, open.x);
-    let part = step_size / max(length, 0.25 * step_size);
-    let most = 0.5 * (half * (densities.x + densities.y));
-    let missed = max(min(((1.0f / 12.0f) * step_size) * (part * rise), most), -most);
-    let given = select(vec2f(missed, 0.0), vec2f(0.0, missed), open.x);
-    let plain = max((half * densities) + select(given, vec2f(0.0), open.x == open.y), vec2f(0.0));
-    let fall = select(1.0, above - below, changes);
-    let mass = (half * (above * (above / fall))) + (length * (fall * (1.0f / 12.0f)));
-    let cut = select(vec2f(0.0, mass), vec2f(mass, 0.0), ends.x > 0.0);
-    return select(plain, cut, changes);
 }
 
 // Single scattering: light of the lamps that media send towards the eye, at a place where they are
@@ -3145,192 +2943,6 @@ fn vol_in_turn(toward: vec3f, direction: vec3f) -> vec2f {
     return vec2f(0.5 * vol_in_dot3(apart, apart), 0.5 * vol_in_dot3(together, together));
 }
 
-// What media along a ray add and take away, by panel.wgsl.
-// Twin: runtime-cpu/src/render/corrected.rs, which says why.
-
-const VOL_IN_THIN: f32 = 0.125;
-const VOL_IN_THICK: f32 = 0.5;
-
-// Where a panel of a medium begins or stops.
-struct Vol_in_PanelEnd {
-    interior: Vol_in_Interior,
-    // Light sent towards the eye, per unit of density.
-    source: vec3f,
-    distance: f32,
-    // Whether it is a node; else it is a wall.
-    is_node: bool,
-}
-
-// The panels between two nodes, one for each medium.
-struct Vol_in_Panels {
-    starts: array<Vol_in_PanelEnd, VOL_IN_MEDIUM_SLOTS>,
-    stops: array<Vol_in_PanelEnd, VOL_IN_MEDIUM_SLOTS>,
-    // Integral of the density that each end stands for.
-    masses: array<vec2f, VOL_IN_MEDIUM_SLOTS>,
-    depth: vec3f,
-    some: bool,
-    // Whether the sources at the node before are known.
-    lit: bool,
-}
-
-fn vol_in_march_panels(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
-    var glow = vol_in_clear_glow();
-    var styled = vol_in_style_rays(ray, end);
-    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
-    var panels: Vol_in_Panels;
-    // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node = vol_in_next_node(&comb, node, 1)) {
-        let t = vec2f(vol_in_panel_node(&comb, node), vol_in_panel_node(&comb, node + 1));
-        vol_in_find_panels(ray, &comb, node, t, &panels);
-        var lit_after = false;
-        if (panels.some) {
-            if (VOL_IN_LIT_MEDIA) {
-                lit_after = vol_in_light_ends(ray, &styled, &panels);
-            }
-            glow = vol_in_gather(glow, node, Vol_in_Chunk(vol_in_panels_sent(&panels), panels.depth));
-        }
-        // Go on while the ray still lets light through.
-        if (vol_in_largest(glow.transmittance) < VOL_IN_STOP) {
-            break;
-        }
-        panels.lit = lit_after;
-        {
-            let medium = 0u;
-            panels.starts[medium] = panels.stops[medium];
-        }
-    }
-    return glow;
-}
-
-// Finds the panels after a node and their optical depths, all media together.
-fn vol_in_find_panels(ray: Vol_in_Ray, comb: ptr<function, Vol_in_Comb>, node: i32, t: vec2f, panels: ptr<function, Vol_in_Panels>) {
-    (*panels).depth = vec3f(0.0);
-    (*panels).some = false;
-    {
-        let medium = 0u;
-        let own = (*comb).own[medium];
-        let between = vol_in_find_walls(ray, medium, comb, node, t);
-        let stretch = vol_in_panel_stretch(own, t, between);
-        let nothing = Vol_in_Interior(0.0, vec3f(0.0), vec3f(0.0), vec3f(0.0));
-        var start = (*panels).starts[medium];
-        var stop = Vol_in_PanelEnd(nothing, vec3f(0.0), stretch.y, between.next < 0.0);
-        // Media are asked at one place of the text, since drivers write it out at each.
-        let ends = vol_in_new_ends(own, between);
-        for (var end = ends.x; end < ends.y; end++) {
-            let distance = select(stretch.x, stretch.y, end == VOL_IN_STOP_END);
-            let interior = vol_in_medium_interior(medium, vol_in_ray_at(ray, distance));
-            if (end == VOL_IN_STOP_END) {
-                stop.interior = interior;
-                stop.source = interior.emission;
-            } else {
-                start = Vol_in_PanelEnd(interior, interior.emission, distance, false);
-            }
-        }
-        var masses = vec2f(0.0);
-        if (vol_in_has_panel(comb, node, t, own, between)) {
-            let densities = vec2f(start.interior.density, stop.interior.density);
-            let open = vol_in_open_ends(comb, node, t, own, between.next);
-            masses = vol_in_panel_masses((*comb).step, stretch.y - stretch.x, densities, open);
-            (*panels).depth += (start.interior.extinction * masses.x) + (stop.interior.extinction * masses.y);
-        }
-        (*panels).starts[medium] = start;
-        (*panels).stops[medium] = stop;
-        (*panels).masses[medium] = masses;
-        (*panels).some = (*panels).some | any(masses > vec2f(0.0));
-    }
-}
-
-fn vol_in_panel_end(panels: ptr<function, Vol_in_Panels>, medium: u32, at_stop: bool) -> Vol_in_PanelEnd {
-    if (at_stop) {
-        return (*panels).stops[medium];
-    }
-    return (*panels).starts[medium];
-}
-
-// Places at which ends of panels are: the node before and the node after, which media share, then the two walls of each.
-const VOL_IN_PLACES_OF_ENDS: u32 = 2u + (2u * VOL_IN_MEDIUM_COUNT);
-const VOL_IN_NODE_BEFORE: u32 = 0u;
-const VOL_IN_NODE_AFTER: u32 = 1u;
-
-// Whether the panel of a medium has an end at a place.
-fn vol_in_is_end_at(end: Vol_in_PanelEnd, medium: u32, place: u32) -> bool {
-    return place == select(2u + (2u * medium) + (place % 2u), place % 2u, end.is_node);
-}
-
-// The first place from one on with matter and without light; PLACES_OF_ENDS if there is none.
-fn vol_in_next_dark_place(panels: ptr<function, Vol_in_Panels>, first: u32) -> u32 {
-    var next = VOL_IN_PLACES_OF_ENDS;
-    for (var place = VOL_IN_PLACES_OF_ENDS; place > 0u;) {
-        place -= 1u;
-        var dark = false;
-        {
-            let medium = 0u;
-            let there = vol_in_is_end_at(vol_in_panel_end(panels, medium, (place % 2u) == VOL_IN_STOP_END), medium, place);
-            dark = dark | (there & any((*panels).masses[medium] > vec2f(0.0)));
-        }
-        let lit = (place == VOL_IN_NODE_BEFORE) & (*panels).lit;
-        next = select(next, place, (place >= first) & (dark & !lit));
-    }
-    return next;
-}
-
-// Lights the ends of panels with matter; whether those at the node after are among them. Rays that are looked at side by side
-// each take their next place, so that all of them are done in a turn or two.
-fn vol_in_light_ends(ray: Vol_in_Ray, styled: ptr<function, Vol_in_StyledRays>, panels: ptr<function, Vol_in_Panels>) -> bool {
-    var lit_after = false;
-    var place = vol_in_next_dark_place(panels, 0u);
-    while (place < VOL_IN_PLACES_OF_ENDS) {
-        let at_stop = (place % 2u) == VOL_IN_STOP_END;
-        var distance = 0.0;
-        var scatter: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
-        var source: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
-        {
-            let medium = 0u;
-            let end = vol_in_panel_end(panels, medium, at_stop);
-            let there = vol_in_is_end_at(end, medium, place);
-            scatter[medium] = select(vec3f(0.0), end.interior.scattering, there);
-            source[medium] = end.source;
-            distance = select(distance, end.distance, there);
-        }
-        vol_in_light_place(ray, distance, styled, &scatter, &source);
-        {
-            let medium = 0u;
-            if (at_stop) {
-                (*panels).stops[medium].source = source[medium];
-            } else {
-                (*panels).starts[medium].source = source[medium];
-            }
-        }
-        lit_after = lit_after | (place == VOL_IN_NODE_AFTER);
-        place = vol_in_next_dark_place(panels, place + 1u);
-    }
-    return lit_after;
-}
-
-// Light that a panel sends towards the eye, in front of it.
-fn vol_in_panel_sent(masses: vec2f, start: vec3f, end: vec3f, depth: vec3f) -> vec3f {
-    let steady = start * vol_in_mean_decay3(depth);
-    let change = (end - start) * vol_in_decay_moment3(depth);
-    let thick = (steady + change) * (masses.x + masses.y);
-    let thin = (start * masses.x) + ((end * vol_in_decay3(depth)) * masses.y);
-    let rise = min(max((depth - vec3f(VOL_IN_THIN)) * (1.0f / (VOL_IN_THICK - VOL_IN_THIN)), vec3f(0.0)), vec3f(1.0));
-    return thin + ((thick - thin) * rise);
-}
-
-// Adds up what the panels send.
-fn vol_in_panels_sent(panels: ptr<function, Vol_in_Panels>) -> vec3f {
-    let depth = (*panels).depth;
-    var sent = vec3f(0.0);
-    {
-        let medium = 0u;
-        let masses = (*panels).masses[medium];
-        if (any(masses > vec2f(0.0))) {
-            sent += vol_in_panel_sent(masses, (*panels).starts[medium].source, (*panels).stops[medium].source, depth);
-        }
-    }
-    return sent;
-}
-
 // What media along a ray add and take away.
 // Twin: runtime-cpu/src/render/medium.rs, which says why.
 
@@ -3350,26 +2962,91 @@ struct Vol_in_Glow {
     coarse_transmittance: vec3f,
 }
 
-// Follows the ray through the media up to its end.
-fn vol_in_march(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
-    if (VOL_IN_CORRECTED) {
-        return vol_in_march_panels(ray, end);
-    }
-    return vol_in_march_nodes(ray, end);
-}
-
 fn vol_in_clear_glow() -> Vol_in_Glow {
     return Vol_in_Glow(vec3f(0.0), vec3f(1.0), vec3f(0.0), vec3f(1.0));
 }
 
-fn vol_in_march_nodes(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
+// Light that a node or panel sends, and its optical depth.
+struct Vol_in_Chunk {
+    sent: vec3f,
+    depth: vec3f,
+}
+
+// Adds a node or panel to those before it.
+fn vol_in_gather(before: Vol_in_Glow, node: i32, chunk: Vol_in_Chunk) -> Vol_in_Glow {
+    var glow = before;
+    let decay = vol_in_decay3(chunk.depth);
+    glow.light += glow.transmittance * chunk.sent;
+    glow.transmittance = glow.transmittance * decay;
+    // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
+    if ((node % 2) == 0) {
+        let twice = chunk.sent * (vec3f(1.0) + decay);
+        glow.coarse_light += glow.coarse_transmittance * twice;
+        glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
+    }
+    return glow;
+}
+
+// Media by the midpoint rule: how much of a ray each node stands for, what is there, and how deep that is.
+// Twin: runtime-cpu/src/render/comb.rs, medium.rs and shadow.rs, which say why.
+
+// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends. The run is that of the node
+// before, or the next one, and the nodes beside it are asked as well.
+fn vol_in_wall(ray: Vol_in_Ray, medium: u32, run: vec2i, t: f32, node: Vol_in_Node, steps_before: i32, end: f32) -> f32 {
+    var region = VOL_IN_FAR;
+    if (((node.first + (2 * node.steps)) > run.x) & (node.first <= (run.y + max(node.steps, steps_before)))) {
+        region = vol_in_medium_region(medium, vol_in_ray_at(ray, t));
+    }
+    return max(region, max(t - end, -t));
+}
+
+// Part of the interval between two neighbouring nodes that the first stands for, given of both the signed distance and half of
+// what it stands for beside other nodes inside.
+fn vol_in_share(own: vec2f, other: vec2f) -> f32 {
+    let divisor = select(-1.0, own.x - other.x, own.x < other.x);
+    let part = (own.y + other.y) * (own.x / divisor);
+    return select(part, own.y, other.x < 0.0);
+}
+
+// The length of ray that a node stands for in a medium, given the node after it; afterwards the comb's own distance is that of the
+// node after. Nodes must come in order, from two before each run: so that regions are asked at one place of the text,
+// since drivers write them out at each.
+fn vol_in_weigh(ray: Vol_in_Ray, medium: u32, comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node, next: Vol_in_Node) -> f32 {
+    let halves = 0.5 * (vec3f(vec3i((*comb).steps_before, node.steps, next.steps)) * (*comb).step);
+    let before = (*comb).before[medium];
+    let own = (*comb).own[medium];
+    let after = vol_in_wall(ray, medium, (*comb).runs[medium], vol_in_middle_of(comb, next), next, node.steps, (*comb).end);
+    let here = vec2f(own, halves.y);
+    let weight = vol_in_share(here, vec2f(before, halves.x)) + vol_in_share(here, vec2f(after, halves.z));
+    (*comb).before[medium] = own;
+    (*comb).own[medium] = after;
+    return select(0.0, weight, (own < 0.0) & (next.first > (*comb).first));
+}
+
+// Follows the ray through the media up to its end.
+fn vol_in_march(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     var glow = vol_in_clear_glow();
     var styled = vol_in_style_rays(ray, end);
-    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP));
+    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_STEP), vol_in_widest_spacing());
     var weights: array<f32, VOL_IN_MEDIUM_SLOTS>;
-    for (var node = comb.first - 2; node <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
-        if (vol_in_weigh(ray, &comb, node, &weights)) {
-            glow = vol_in_gather(glow, node, vol_in_node_chunk(ray, vol_in_node_distance(node, comb.step, comb.offset), &styled, &weights));
+    // What is at the node and at the next one, of media that these are inside.
+    var here: array<Vol_in_Interior, VOL_IN_MEDIUM_SLOTS>;
+    var ahead: array<Vol_in_Interior, VOL_IN_MEDIUM_SLOTS>;
+    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
+        let next = vol_in_node_after(&comb, node);
+        var some = false;
+        {
+            let medium = 0u;
+            weights[medium] = vol_in_weigh(ray, medium, &comb, node, next);
+            here[medium] = ahead[medium];
+            // Right after its region: the closest point of a curve is kept for who asks next.
+            if (comb.own[medium] < 0.0) {
+                ahead[medium] = vol_in_medium_interior(medium, vol_in_ray_at(ray, vol_in_middle_of(&comb, next)));
+            }
+            some = some | (weights[medium] > 0.0);
+        }
+        if (some) {
+            glow = vol_in_gather(glow, node.number, vol_in_node_chunk(ray, vol_in_middle_of(&comb, node), &styled, &weights, &here));
         }
         // Go on while the ray still lets light through.
         if (vol_in_largest(glow.transmittance) < VOL_IN_STOP) {
@@ -3379,20 +3056,14 @@ fn vol_in_march_nodes(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     return glow;
 }
 
-// Light that a node or panel sends, and its optical depth.
-struct Vol_in_Chunk {
-    sent: vec3f,
-    depth: vec3f,
-}
-
 // Light and optical depth of one node.
 fn vol_in_node_chunk(
     ray: Vol_in_Ray,
     t: f32,
     styled: ptr<function, Vol_in_StyledRays>,
     weights: ptr<function, array<f32, VOL_IN_MEDIUM_SLOTS>>,
+    interiors: ptr<function, array<Vol_in_Interior, VOL_IN_MEDIUM_SLOTS>>,
 ) -> Vol_in_Chunk {
-    let point = vol_in_ray_at(ray, t);
     var depth = vec3f(0.0);
     var scatter: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
     var source: array<vec3f, VOL_IN_MEDIUM_SLOTS>;
@@ -3402,7 +3073,7 @@ fn vol_in_node_chunk(
         scatter[medium] = vec3f(0.0);
         source[medium] = vec3f(0.0);
         if (weight > 0.0) {
-            let interior = vol_in_medium_interior(medium, point);
+            let interior = (*interiors)[medium];
             let mass = max(interior.density, 0.0) * weight;
             depth += interior.extinction * mass;
             scatter[medium] = interior.scattering * mass;
@@ -3421,19 +3092,32 @@ fn vol_in_node_chunk(
     return Vol_in_Chunk(sent, depth);
 }
 
-// Adds a node or panel to those before it.
-fn vol_in_gather(before: Vol_in_Glow, node: i32, chunk: Vol_in_Chunk) -> Vol_in_Glow {
-    var glow = before;
-    let decay = vol_in_decay3(chunk.depth);
-    glow.light += glow.transmittance * chunk.sent;
-    glow.transmittance = glow.transmittance * decay;
-    // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
-    if ((node % 2) == 0) {
-        let twice = chunk.sent * (vec3f(1.0) + decay);
-        glow.coarse_light += glow.coarse_transmittance * twice;
-        glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
+// Integral of the extinction along the ray.
+fn vol_in_optical_depth(ray: Vol_in_Ray, end: f32) -> vec3f {
+    var comb = vol_in_new_comb(ray, end, vol_frame_word(VOL_IN_AT_SHADOW_STEP), 1);
+    // Density and extinction of each medium at the next node, where that is inside.
+    var ahead: array<vec4f, VOL_IN_MEDIUM_SLOTS>;
+    var depth = vec3f(0.0);
+    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
+        let next = vol_in_node_after(&comb, node);
+        // Optical depth of each node, all media together.
+        var node_depth = vec3f(0.0);
+        {
+            let medium = 0u;
+            let weight = vol_in_weigh(ray, medium, &comb, node, next);
+            let matter = ahead[medium];
+            if (comb.own[medium] < 0.0) {
+                ahead[medium] = vol_in_medium_extinction(medium, vol_in_ray_at(ray, vol_in_middle_of(&comb, next)));
+            }
+            node_depth += matter.yzw * (max(matter.x, 0.0) * weight);
+        }
+        depth += node_depth;
+        // Go on while the ray is not dark yet.
+        if (vol_in_smallest(depth) > VOL_IN_OPAQUE) {
+            break;
+        }
     }
-    return glow;
+    return depth;
 }
 
 // A scene without styles; see styled.wgsl.

@@ -1167,17 +1167,18 @@ const MEDIUM_SLOTS: u32 = 1u;
 const LIGHT_SLOTS: u32 = 1u;
 const TRANSFER_SIZE: u32 = 256u;
 const OBJECT_WORDS: u32 = 8u;
-const MEDIUM_WORDS: u32 = 8u;
+const MEDIUM_WORDS: u32 = 9u;
 const CELL_WORDS: u32 = 6u;
 const CELLS_WORDS: u32 = 384u;
 const LIGHT_WORDS: u32 = 12u;
 const PIXEL_WORDS: u32 = 15u;
 const AT_OBJECTS: u32 = 27u;
 const AT_MEDIA: u32 = 27u;
-const AT_LIGHTS: u32 = 35u;
-const AT_CELLS: u32 = 75u;
+const AT_LIGHTS: u32 = 36u;
+const AT_CELLS: u32 = 76u;
 const ROW_WORDS: u32 = 0u;
 const CORRECTED: bool = true;
+const SPACED: bool = false;
 const SOFT_LIGHTS: bool = false;
 const OCCLUDING_LIGHTS: bool = false;
 const LIGHT_GRIDS: bool = true;
@@ -2084,90 +2085,6 @@ fn blocked(ray: Ray, distance: f32, least: f32) -> bool {
     return inside;
 }
 
-// Integral of the extinction along the ray.
-fn optical_depth(ray: Ray, end: f32) -> vec3f {
-    if (CORRECTED) {
-        return depth_by_panels(ray, end);
-    }
-    return depth_by_nodes(ray, end);
-}
-
-fn depth_by_nodes(ray: Ray, end: f32) -> vec3f {
-    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
-    var weights: array<f32, MEDIUM_SLOTS>;
-    var depth = vec3f(0.0);
-    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
-        // Optical depth of each node, all media together.
-        if (weigh(ray, &comb, node, &weights)) {
-            depth += node_depth(ray_at(ray, node_distance(node, comb.step, comb.offset)), &weights);
-        }
-        // Go on while the ray is not dark yet.
-        if (smallest(depth) > OPAQUE) {
-            break;
-        }
-    }
-    return depth;
-}
-
-fn node_depth(point: vec3f, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> vec3f {
-    var depth = vec3f(0.0);
-    {
-        let medium = 0u;
-        let weight = (*weights)[medium];
-        if (weight > 0.0) {
-            let matter = medium_extinction(medium, point);
-            depth += matter.yzw * (max(matter.x, 0.0) * weight);
-        }
-    }
-    return depth;
-}
-
-fn depth_by_panels(ray: Ray, end: f32) -> vec3f {
-    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP));
-    // Density and extinction of each medium at the node before.
-    var before: array<vec4f, MEDIUM_SLOTS>;
-    var depth = vec3f(0.0);
-    // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
-        // Optical depth of each panel, all media together.
-        depth += panel_depth(ray, &comb, node, &before);
-        // Go on while the ray is not dark yet.
-        if (smallest(depth) > OPAQUE) {
-            break;
-        }
-    }
-    return depth;
-}
-
-fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<function, array<vec4f, MEDIUM_SLOTS>>) -> vec3f {
-    let step_size = (*comb).step;
-    let t = vec2f(panel_node(comb, node), panel_node(comb, node + 1));
-    var depth = vec3f(0.0);
-    {
-        let medium = 0u;
-        let own = (*comb).own[medium];
-        let between = find_walls(ray, medium, comb, node, t);
-        let stretch = panel_stretch(own, t, between);
-        var first = (*before)[medium];
-        var last = vec4f(0.0);
-        // Media are asked at one place of the text, since drivers write it out at each.
-        let ends = new_ends(own, between);
-        for (var end = ends.x; end < ends.y; end++) {
-            let at_stop = end == STOP_END;
-            let matter = medium_extinction(medium, ray_at(ray, select(stretch.x, stretch.y, at_stop)));
-            first = select(matter, first, at_stop);
-            last = select(last, matter, at_stop);
-        }
-        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
-        if (has_panel(comb, node, t, own, between)) {
-            let open = open_ends(comb, node, t, own, between.next);
-            let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
-            depth += (first.yzw * masses.x) + (last.yzw * masses.y);
-        }
-    }
-    return depth;
-}
-
 // Optical depth between a light and a point, looked up in the light's grid.
 // Twin: runtime-cpu/src/render/light_grid.rs, which says why.
 
@@ -2516,6 +2433,114 @@ fn distance_above(
     return distance;
 }
 
+// How far apart the nodes of a ray are.
+// Twin: runtime-cpu/src/render/spacing.rs, which says why.
+
+// A node, and the steps that it stands for.
+struct Node {
+    first: i32,
+    steps: i32,
+    // Among all nodes of the ray.
+    number: i32,
+}
+
+// The widest spacing of the media: steps of a block.
+fn widest_spacing() -> i32 {
+    var widest = 1;
+    if (SPACED) {
+        {
+            let medium = 0u;
+            widest = max(widest, i32(vol_frame_word(medium_word(medium) + 8u)));
+        }
+    }
+    return widest;
+}
+
+fn spacing_of(comb: ptr<function, Comb>, medium: u32) -> i32 {
+    if (SPACED && ((*comb).block > 1)) {
+        return i32(vol_frame_word(medium_word(medium) + 8u));
+    }
+    return 1;
+}
+
+// Steps of a node in the block of a step: those of the finest medium that has a run there. Before the first block nodes are as
+// in it.
+fn spacing_at(comb: ptr<function, Comb>, step: i32) -> i32 {
+    var spacing = (*comb).block;
+    if (SPACED) {
+        let first = max(step, 0) & -spacing;
+        let last = f32(first + (spacing - 1));
+        {
+            let medium = 0u;
+            let runs = (*comb).all[medium];
+            let there = any((runs.first <= vec4f(last)) & (runs.last >= vec4f(f32(first))));
+            spacing = select(spacing, min(spacing, spacing_of(comb, medium)), there);
+        }
+    }
+    return spacing;
+}
+
+// Distance of a node from the origin of the ray: of the middle of its steps.
+fn middle_of(comb: ptr<function, Comb>, node: Node) -> f32 {
+    return node_distance(node.first, (*comb).step, (*comb).offset + (0.5 * f32(node.steps - 1)));
+}
+
+fn is_block_begun(comb: ptr<function, Comb>, step: i32) -> bool {
+    return (step & ((*comb).block - 1)) == 0;
+}
+
+fn node_after(comb: ptr<function, Comb>, node: Node) -> Node {
+    var after = Node(node.first + node.steps, node.steps, node.number + 1);
+    if (SPACED && is_block_begun(comb, after.first)) {
+        after.steps = spacing_at(comb, after.first);
+    }
+    return after;
+}
+
+fn node_before(comb: ptr<function, Comb>, node: Node) -> Node {
+    var steps = node.steps;
+    if (SPACED && is_block_begun(comb, node.first)) {
+        steps = spacing_at(comb, node.first - 1);
+    }
+    return Node(node.first - steps, steps, node.number - 1);
+}
+
+// The node that stands for a step not before another node, with no run between the blocks of the two.
+fn node_at(comb: ptr<function, Comb>, known: Node, step: i32) -> Node {
+    if (!SPACED) {
+        return Node(step, 1, step);
+    }
+    let block = (*comb).block;
+    let own_end = (known.first | (block - 1)) + 1;
+    if (step < own_end) {
+        let more = (step - known.first) / known.steps;
+        return Node(known.first + (more * known.steps), known.steps, known.number + more);
+    }
+    let begin = step & -block;
+    let steps = spacing_at(comb, step);
+    let whole = ((own_end - known.first) / known.steps) + ((begin - own_end) / block);
+    let more = (step - begin) / steps;
+    return Node(begin + (more * steps), steps, known.number + (whole + more));
+}
+
+// The node that is a number of nodes before the one that stands for a step, but none before another; as of node_at.
+fn node_ahead(comb: ptr<function, Comb>, earliest: Node, step: i32, lead: i32) -> Node {
+    if (!SPACED) {
+        let first = max(earliest.first, step - lead);
+        return Node(first, 1, first);
+    }
+    var node = earliest;
+    if (step > earliest.first) {
+        node = node_at(comb, earliest, step);
+        for (var back = 0; back < lead; back++) {
+            if (node.number > earliest.number) {
+                node = node_before(comb, node);
+            }
+        }
+    }
+    return node;
+}
+
 // The samples of media along a ray, and the length of ray that each stands for.
 // Twin: runtime-cpu/src/render/comb.rs, which says why.
 
@@ -2525,17 +2550,20 @@ const NO_RUN: f32 = 8388608.0;
 
 struct Comb {
     step: f32,
-    // Where node 0 is, in steps.
+    // Where the middle of step 0 is, in steps.
     offset: f32,
+    // Steps that are divided alike; see spacing.wgsl.
+    block: i32,
     end: f32,
-    // Nodes that may be inside some medium.
+    // Steps that may be inside some medium.
     first: i32,
     last: i32,
     // The same for each medium, and of those this run or the next one.
     all: array<Runs, MEDIUM_SLOTS>,
     runs: array<vec2i, MEDIUM_SLOTS>,
-    // Signed distances of each medium at the node before and at the next one.
+    // Signed distances of each medium at the node before, how many steps that stands for, and at the next one.
     before: array<f32, MEDIUM_SLOTS>,
+    steps_before: i32,
     own: array<f32, MEDIUM_SLOTS>,
 }
 
@@ -2546,9 +2574,11 @@ struct Runs {
     last: vec4f,
 }
 
-// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
-fn first_node(shift: f32) -> f32 {
-    return select(0.5 + shift, select(shift, shift - 1.0, shift > 0.0), CORRECTED);
+// Where the middle of step 0 is, in steps. Panels begin at the origin, so there node 0 is at or before it.
+fn first_node(shift: f32, block: i32) -> f32 {
+    let moved = floor(f32(block) * (0.5 + shift));
+    let middle = (0.5 + shift) - (f32(block - 1) - moved);
+    return select(middle, select(shift, shift - 1.0, shift > 0.0), CORRECTED);
 }
 
 fn node_distance(node: i32, step_size: f32, offset: f32) -> f32 {
@@ -2559,11 +2589,11 @@ fn medium_word(medium: u32) -> u32 {
     return AT_MEDIA + (MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
-// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
-fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2i {
+// Steps that may be inside a box; none if the last is less than the first. The box is grown by what a node stands for, so that
+// the neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn node_range(ray: Ray, lo: vec3f, hi: vec3f, spacing: i32, comb: ptr<function, Comb>) -> vec2i {
     let step_size = (*comb).step;
-    let reach = vec3f(1.01 * step_size);
+    let reach = vec3f((1.01 * f32(spacing)) * step_size);
     let span = slab(ray, lo - reach, hi + reach);
     let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
@@ -2573,10 +2603,11 @@ fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2
 }
 
 // Lays out the nodes of the ray up to its end.
-fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
+fn new_comb(ray: Ray, end: f32, step_size: f32, block: i32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
-    comb.offset = first_node(ray.shift);
+    comb.block = block;
+    comb.offset = first_node(ray.shift, block);
     comb.end = end;
     comb.first = NO_NODE;
     comb.last = -1;
@@ -2598,8 +2629,9 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
 // medium without cells.
 fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     let at = medium_word(medium);
+    let spacing = spacing_of(comb, medium);
     var runs = Runs(vec4f(NO_RUN), vec4f(-1.0));
-    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), comb);
+    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), spacing, comb);
     if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
         return runs;
     }
@@ -2609,7 +2641,7 @@ fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     }
     var cell = AT_CELLS + (CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let range = node_range(ray, word3(cell), word3(cell + 3u), comb);
+        let range = node_range(ray, word3(cell), word3(cell + 3u), spacing, comb);
         if (range.x <= range.y) {
             runs = add_run(runs, range);
         }
@@ -2652,64 +2684,164 @@ fn run_from(runs: Runs, node: i32) -> vec2i {
     return vec2i(i32(least), select(end, NO_NODE, least == NO_RUN));
 }
 
+// The first node to look at: `lead` before the first of a run. More than the last if there is none.
+fn start_node(comb: ptr<function, Comb>, lead: i32) -> Node {
+    let origin = Node(0, spacing_at(comb, 0), 0);
+    var before = origin;
+    for (var back = 0; back < lead; back++) {
+        before = node_before(comb, before);
+    }
+    return node_ahead(comb, before, (*comb).first, lead);
+}
+
 // The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn next_node(comb: ptr<function, Comb>, node: i32, lead: i32) -> i32 {
-    let after = node + 1;
+fn next_node(comb: ptr<function, Comb>, node: Node, lead: i32) -> Node {
+    let after = node_after(comb, node);
     var first = NO_NODE;
     {
         let medium = 0u;
-        if ((*comb).runs[medium].y < after) {
-            (*comb).runs[medium] = run_from((*comb).all[medium], after);
+        if ((*comb).runs[medium].y < after.first) {
+            (*comb).runs[medium] = run_from((*comb).all[medium], after.first);
         }
         first = min(first, (*comb).runs[medium].x);
     }
-    let next = max(after, first - lead);
+    let next = node_ahead(comb, after, first, lead);
     // Distances say nothing about nodes farther on.
+    let is_farther = next.first > after.first;
+    (*comb).steps_before = node.steps;
     {
         let medium = 0u;
-        (*comb).before[medium] = select((*comb).before[medium], FAR, next > after);
-        (*comb).own[medium] = select((*comb).own[medium], FAR, next > after);
+        (*comb).before[medium] = select((*comb).before[medium], FAR, is_farther);
+        (*comb).own[medium] = select((*comb).own[medium], FAR, is_farther);
     }
     return next;
 }
 
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn wall(ray: Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
-    var region = FAR;
-    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
-        region = medium_region(medium, ray_at(ray, t));
+// Single scattering: light of the lamps that media send towards the eye, at a place where they are
+// sampled.
+// Twin: runtime-cpu/src/render/scatter.rs, which says why.
+
+// Adds the light of all lamps to the sources of all media at a place.
+fn light_place(
+    ray: Ray,
+    t: f32,
+    styled: ptr<function, StyledRays>,
+    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+    source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+) {
+    let point = ray_at(ray, t);
+    let count = light_count();
+    for (var light = 0u; light < count; light++) {
+        let lamp = arriving(light, point);
+        var seen = place_visibility(lamp, light, styled, ray, t, scatter);
+        if (STYLES && (lamp.style != 0u)) {
+            seen = seen * styled_tint(lamp, light, styled, point);
+        }
+        scatter_light(lamp, seen, ray.direction, scatter, source);
     }
-    return max(region, max(t - end, -t));
 }
 
-// Part of the interval between two neighbouring nodes that the first stands for, given the signed
-// distances of both.
-fn share(own: f32, other: f32, step_size: f32) -> f32 {
-    let divisor = select(-1.0, own - other, own < other);
-    let part = step_size * (own / divisor);
-    return select(part, 0.5 * step_size, other < 0.0);
-}
-
-// The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before each run: so that regions are asked at one place of the text,
-// since drivers write them out at each.
-fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
-    var any_inside = false;
-    let step_size = (*comb).step;
-    let t = node_distance(node + 1, step_size, (*comb).offset);
+// Fraction of a lamp's light that arrives at a place, if a medium needs to know.
+fn place_visibility(
+    lamp: Arriving,
+    light: u32,
+    styled: ptr<function, StyledRays>,
+    ray: Ray,
+    t: f32,
+    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+) -> vec3f {
+    var asked = false;
     {
         let medium = 0u;
-        let before = (*comb).before[medium];
-        let own = (*comb).own[medium];
-        let after = wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
-        let weight = share(own, before, step_size) + share(own, after, step_size);
-        let is_inside = (own < 0.0) & (node >= (*comb).first);
-        (*weights)[medium] = select(0.0, weight, is_inside);
-        any_inside = any_inside | is_inside;
-        (*comb).before[medium] = own;
-        (*comb).own[medium] = after;
+        let scatters = any((*scatter)[medium] > vec3f(0.0));
+        asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
     }
-    return any_inside;
+    if (asked & lamp.shadows) {
+        let toward = new_ray(ray_at(ray, t), lamp.direction);
+        var part = 1.0;
+        if (STYLES && (lamp.style != 0u)) {
+            counted_rays += 1u;
+            part = styled_share(lamp, light, styled, ray, t);
+        } else {
+            part = unblocked(toward, lamp.distance, shadow_bias(t));
+        }
+        return through_media(toward, lamp.distance, part, lamp.grid);
+    }
+    return vec3f(1.0);
+}
+
+// Adds the light of one lamp, scattered towards the eye.
+fn scatter_light(
+    lamp: Arriving,
+    seen: vec3f,
+    direction: vec3f,
+    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+    source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
+) {
+    let angles = turn(lamp.direction, direction);
+    {
+        let medium = 0u;
+        let lighting = vol_frame_word(medium_word(medium));
+        let part = (*scatter)[medium];
+        if (any(part > vec3f(0.0)) & (lighting > UNLIT)) {
+            // Add what arrives and is turned towards the eye.
+            let phase = medium_phase(medium, angles.x, angles.y);
+            let arrives = select(seen, vec3f(1.0), lighting == UNSHADOWED);
+            (*source)[medium] += (part * phase) * (lamp.irradiance * arrives);
+        }
+    }
+}
+
+// 1 - cos and 1 + cos of the angle by which light from a lamp turns towards the eye, without
+// cancellation.
+fn turn(toward: vec3f, direction: vec3f) -> vec2f {
+    let apart = toward - direction;
+    let together = toward + direction;
+    return vec2f(0.5 * dot3(apart, apart), 0.5 * dot3(together, together));
+}
+
+// What media along a ray add and take away.
+// Twin: runtime-cpu/src/render/medium.rs, which says why.
+
+// A medium at a point: density, and per unit of it.
+struct Interior {
+    density: f32,
+    scattering: vec3f,
+    extinction: vec3f,
+    emission: vec3f,
+}
+
+struct Glow {
+    light: vec3f,
+    transmittance: vec3f,
+    // The same two by every other node.
+    coarse_light: vec3f,
+    coarse_transmittance: vec3f,
+}
+
+fn clear_glow() -> Glow {
+    return Glow(vec3f(0.0), vec3f(1.0), vec3f(0.0), vec3f(1.0));
+}
+
+// Light that a node or panel sends, and its optical depth.
+struct Chunk {
+    sent: vec3f,
+    depth: vec3f,
+}
+
+// Adds a node or panel to those before it.
+fn gather(before: Glow, node: i32, chunk: Chunk) -> Glow {
+    var glow = before;
+    let decay = decay3(chunk.depth);
+    glow.light += glow.transmittance * chunk.sent;
+    glow.transmittance = glow.transmittance * decay;
+    // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
+    if ((node % 2) == 0) {
+        let twice = chunk.sent * (vec3f(1.0) + decay);
+        glow.coarse_light += glow.coarse_transmittance * twice;
+        glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
+    }
+    return glow;
 }
 
 // Short ways of a ray through a medium, between two neighbouring nodes that are outside.
@@ -2919,89 +3051,6 @@ fn panel_masses(step_size: f32, length: f32, ends: vec2f, open: vec2<bool>) -> v
     return select(plain, cut, changes);
 }
 
-// Single scattering: light of the lamps that media send towards the eye, at a place where they are
-// sampled.
-// Twin: runtime-cpu/src/render/scatter.rs, which says why.
-
-// Adds the light of all lamps to the sources of all media at a place.
-fn light_place(
-    ray: Ray,
-    t: f32,
-    styled: ptr<function, StyledRays>,
-    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
-    source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
-) {
-    let point = ray_at(ray, t);
-    let count = light_count();
-    for (var light = 0u; light < count; light++) {
-        let lamp = arriving(light, point);
-        var seen = place_visibility(lamp, light, styled, ray, t, scatter);
-        if (STYLES && (lamp.style != 0u)) {
-            seen = seen * styled_tint(lamp, light, styled, point);
-        }
-        scatter_light(lamp, seen, ray.direction, scatter, source);
-    }
-}
-
-// Fraction of a lamp's light that arrives at a place, if a medium needs to know.
-fn place_visibility(
-    lamp: Arriving,
-    light: u32,
-    styled: ptr<function, StyledRays>,
-    ray: Ray,
-    t: f32,
-    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
-) -> vec3f {
-    var asked = false;
-    {
-        let medium = 0u;
-        let scatters = any((*scatter)[medium] > vec3f(0.0));
-        asked = asked | (scatters & (vol_frame_word(medium_word(medium)) == SHADOWED));
-    }
-    if (asked & lamp.shadows) {
-        let toward = new_ray(ray_at(ray, t), lamp.direction);
-        var part = 1.0;
-        if (STYLES && (lamp.style != 0u)) {
-            counted_rays += 1u;
-            part = styled_share(lamp, light, styled, ray, t);
-        } else {
-            part = unblocked(toward, lamp.distance, shadow_bias(t));
-        }
-        return through_media(toward, lamp.distance, part, lamp.grid);
-    }
-    return vec3f(1.0);
-}
-
-// Adds the light of one lamp, scattered towards the eye.
-fn scatter_light(
-    lamp: Arriving,
-    seen: vec3f,
-    direction: vec3f,
-    scatter: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
-    source: ptr<function, array<vec3f, MEDIUM_SLOTS>>,
-) {
-    let angles = turn(lamp.direction, direction);
-    {
-        let medium = 0u;
-        let lighting = vol_frame_word(medium_word(medium));
-        let part = (*scatter)[medium];
-        if (any(part > vec3f(0.0)) & (lighting > UNLIT)) {
-            // Add what arrives and is turned towards the eye.
-            let phase = medium_phase(medium, angles.x, angles.y);
-            let arrives = select(seen, vec3f(1.0), lighting == UNSHADOWED);
-            (*source)[medium] += (part * phase) * (lamp.irradiance * arrives);
-        }
-    }
-}
-
-// 1 - cos and 1 + cos of the angle by which light from a lamp turns towards the eye, without
-// cancellation.
-fn turn(toward: vec3f, direction: vec3f) -> vec2f {
-    let apart = toward - direction;
-    let together = toward + direction;
-    return vec2f(0.5 * dot3(apart, apart), 0.5 * dot3(together, together));
-}
-
 // What media along a ray add and take away, by panel.wgsl.
 // Twin: runtime-cpu/src/render/corrected.rs, which says why.
 
@@ -3030,13 +3079,15 @@ struct Panels {
     lit: bool,
 }
 
-fn march_panels(ray: Ray, end: f32) -> Glow {
+// Follows the ray through the media up to its end.
+fn march(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
     var styled = style_rays(ray, end);
-    var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
+    var comb = new_comb(ray, end, vol_frame_word(AT_STEP), 1);
     var panels: Panels;
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
+    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, 1)) {
+        let node = at.first;
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
@@ -3188,109 +3239,51 @@ fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
     return sent;
 }
 
-// What media along a ray add and take away.
-// Twin: runtime-cpu/src/render/medium.rs, which says why.
-
-// A medium at a point: density, and per unit of it.
-struct Interior {
-    density: f32,
-    scattering: vec3f,
-    extinction: vec3f,
-    emission: vec3f,
-}
-
-struct Glow {
-    light: vec3f,
-    transmittance: vec3f,
-    // The same two by every other node.
-    coarse_light: vec3f,
-    coarse_transmittance: vec3f,
-}
-
-// Follows the ray through the media up to its end.
-fn march(ray: Ray, end: f32) -> Glow {
-    if (CORRECTED) {
-        return march_panels(ray, end);
-    }
-    return march_nodes(ray, end);
-}
-
-fn clear_glow() -> Glow {
-    return Glow(vec3f(0.0), vec3f(1.0), vec3f(0.0), vec3f(1.0));
-}
-
-fn march_nodes(ray: Ray, end: f32) -> Glow {
-    var glow = clear_glow();
-    var styled = style_rays(ray, end);
-    var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
-    var weights: array<f32, MEDIUM_SLOTS>;
-    for (var node = comb.first - 2; node <= comb.last; node = next_node(&comb, node, 2)) {
-        if (weigh(ray, &comb, node, &weights)) {
-            glow = gather(glow, node, node_chunk(ray, node_distance(node, comb.step, comb.offset), &styled, &weights));
-        }
-        // Go on while the ray still lets light through.
-        if (largest(glow.transmittance) < STOP) {
+// Integral of the extinction along the ray.
+fn optical_depth(ray: Ray, end: f32) -> vec3f {
+    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP), 1);
+    // Density and extinction of each medium at the node before.
+    var before: array<vec4f, MEDIUM_SLOTS>;
+    var depth = vec3f(0.0);
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, 1)) {
+        // Optical depth of each panel, all media together.
+        depth += panel_depth(ray, &comb, node.first, &before);
+        // Go on while the ray is not dark yet.
+        if (smallest(depth) > OPAQUE) {
             break;
         }
     }
-    return glow;
+    return depth;
 }
 
-// Light that a node or panel sends, and its optical depth.
-struct Chunk {
-    sent: vec3f,
-    depth: vec3f,
-}
-
-// Light and optical depth of one node.
-fn node_chunk(
-    ray: Ray,
-    t: f32,
-    styled: ptr<function, StyledRays>,
-    weights: ptr<function, array<f32, MEDIUM_SLOTS>>,
-) -> Chunk {
-    let point = ray_at(ray, t);
+fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<function, array<vec4f, MEDIUM_SLOTS>>) -> vec3f {
+    let step_size = (*comb).step;
+    let t = vec2f(panel_node(comb, node), panel_node(comb, node + 1));
     var depth = vec3f(0.0);
-    var scatter: array<vec3f, MEDIUM_SLOTS>;
-    var source: array<vec3f, MEDIUM_SLOTS>;
     {
         let medium = 0u;
-        let weight = (*weights)[medium];
-        scatter[medium] = vec3f(0.0);
-        source[medium] = vec3f(0.0);
-        if (weight > 0.0) {
-            let interior = medium_interior(medium, point);
-            let mass = max(interior.density, 0.0) * weight;
-            depth += interior.extinction * mass;
-            scatter[medium] = interior.scattering * mass;
-            source[medium] = interior.emission * mass;
+        let own = (*comb).own[medium];
+        let between = find_walls(ray, medium, comb, node, t);
+        let stretch = panel_stretch(own, t, between);
+        var first = (*before)[medium];
+        var last = vec4f(0.0);
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let at_stop = end == STOP_END;
+            let matter = medium_extinction(medium, ray_at(ray, select(stretch.x, stretch.y, at_stop)));
+            first = select(matter, first, at_stop);
+            last = select(last, matter, at_stop);
+        }
+        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
+        if (has_panel(comb, node, t, own, between)) {
+            let open = open_ends(comb, node, t, own, between.next);
+            let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
+            depth += (first.yzw * masses.x) + (last.yzw * masses.y);
         }
     }
-    if (LIT_MEDIA) {
-        light_place(ray, t, styled, &scatter, &source);
-    }
-    // Add up what they send.
-    var sent = vec3f(0.0);
-    {
-        let medium = 0u;
-        sent += source[medium] * mean_decay3(depth);
-    }
-    return Chunk(sent, depth);
-}
-
-// Adds a node or panel to those before it.
-fn gather(before: Glow, node: i32, chunk: Chunk) -> Glow {
-    var glow = before;
-    let decay = decay3(chunk.depth);
-    glow.light += glow.transmittance * chunk.sent;
-    glow.transmittance = glow.transmittance * decay;
-    // Of twice the matter: (1 - exp(-2x)) / x is (1 - exp(-x)) / x times 1 + exp(-x).
-    if ((node % 2) == 0) {
-        let twice = chunk.sent * (vec3f(1.0) + decay);
-        glow.coarse_light += glow.coarse_transmittance * twice;
-        glow.coarse_transmittance = glow.coarse_transmittance * (decay * decay);
-    }
-    return glow;
+    return depth;
 }
 
 // A scene without styles; see styled.wgsl.

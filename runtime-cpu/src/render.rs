@@ -56,6 +56,8 @@ mod scatter;
 mod scene;
 mod shade;
 mod shadow;
+mod spacing;
+mod spacing_choice;
 mod spread;
 mod step_choice;
 mod stride;

@@ -25,6 +25,8 @@ pub(super) struct Plan {
     pub(super) estimate: Option<f32>,
     /// What was chosen for each light.
     pub(super) grids: Vec<GridChoice>,
+    /// For how many steps a sample of each medium stands where no finer one is.
+    pub(super) spacings: Vec<u32>,
 }
 
 /// Finds settings that mean nothing together.
@@ -129,6 +131,7 @@ pub(super) fn plan(
                 has_steps: true,
                 estimate: Some(chosen.estimate),
                 grids: chosen.grids,
+                spacings: chosen.spacings,
             }
         }
         Integrator::FixedStep => {
@@ -143,6 +146,7 @@ pub(super) fn plan(
                 has_steps: true,
                 estimate: None,
                 grids: Vec::new(),
+                spacings: Vec::new(),
             }
         }
         Integrator::MonteCarlo => Plan {
@@ -151,6 +155,7 @@ pub(super) fn plan(
             has_steps: false,
             estimate: None,
             grids: Vec::new(),
+            spacings: Vec::new(),
         },
     }
 }

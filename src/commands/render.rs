@@ -122,6 +122,7 @@ fn new_stats(arguments: &cli::Render, prepared: &Prepared, device: &Device) -> S
         estimate: None,
         error: None,
         light_grids: Vec::new(),
+        spacings: Vec::new(),
         light_maps: Vec::new(),
         samples_per_pixel: 0,
         adaptive: None,

@@ -53,6 +53,8 @@ pub(super) struct Stats {
     pub(super) error: Option<f64>,
     /// What was chosen for each light of the last frame.
     pub(super) light_grids: Vec<LightGrid>,
+    /// For how many steps a sample of each medium of the last frame stands where no finer one is.
+    pub(super) spacings: Vec<u32>,
     /// Light maps of the last frame.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) light_maps: Vec<LightMap>,
@@ -89,6 +91,7 @@ impl Stats {
         });
         self.estimate = self.estimate.into_iter().chain(estimate).reduce(f32::max);
         self.light_grids = plan.grids.iter().map(LightGrid::new).collect();
+        self.spacings.clone_from(&plan.spacings);
         self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);
         self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);

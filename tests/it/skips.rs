@@ -3,6 +3,8 @@
 use crate::support::{compile_without, ensure, examples, frame, render};
 use libtest_mimic::{Failed, Trial};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use vol::compare::color_error;
 use vol_compiler::frame::{Image, Job, Quadrature, Sampling};
 use vol_compiler::skip::{self, Skip, Skips};
 
@@ -19,6 +21,7 @@ pub(crate) fn trials() -> Vec<Trial> {
         let test = move || neutral_in(skip, &scene, [160, 90]);
         trials.push(Trial::test(format!("skips::{}::many", skip::TABLE[skip as usize].name), test));
     }
+    trials.push(Trial::test("skips::spacings::galaxy", smooth_media_are_sampled_less));
     for (place, eye) in [("outside", "(4, 4, 9)"), ("inside", "(1.5, 1.5, 1.5)")] {
         trials.push(Trial::test(format!("skips::parts::seen_from_{place}"), move || {
             edges_stay(&union_of_many(eye))
@@ -87,7 +90,8 @@ fn edges_stay(text: &str) -> Result<(), Failed> {
     ensure(apart <= whole.pixels.len() / 500, || format!("{apart} of {} pixels", whole.pixels.len()))
 }
 
-/// Whether it matters to a picture by itself; what is kept from frame to frame is tried in `cli/animations.rs`.
+/// Whether it matters to a picture by itself; what is kept from frame to frame is tried in `cli/animations.rs`, spacings, which are
+/// chosen for an error, in [`smooth_media_are_sampled_less`].
 fn in_one_picture(skip: Skip) -> bool {
     match skip {
         Skip::Cells
@@ -97,7 +101,7 @@ fn in_one_picture(skip: Skip) -> bool {
         | Skip::Objects
         | Skip::Tapes
         | Skip::Parts => true,
-        Skip::SameFrames | Skip::SameGrids => false,
+        Skip::SameFrames | Skip::SameGrids | Skip::Spacings => false,
     }
 }
 
@@ -113,8 +117,33 @@ fn bound(skip: Skip) -> f32 {
         | Skip::Objects
         | Skip::Tapes
         // Of a scene without a union of many: see `edges_stay`.
-        | Skip::Parts => 0.0,
+        | Skip::Parts
+        // Before they are chosen.
+        | Skip::Spacings => 0.0,
     }
+}
+
+/// The galaxy's stars are sampled farther apart than its dust: for fewer samples, and not much is changed.
+fn smooth_media_are_sampled_less() -> Result<(), Failed> {
+    let examples = examples();
+    let galaxy = examples.iter().find(|(name, _)| name == "galaxy").ok_or("the example is missing")?;
+    let text = std::fs::read_to_string(&galaxy.1)?;
+    let (size, max_error) = ([160, 90], 1e-2);
+    let [with, without] = [Skips::ALL, Skips::ALL.without(Skip::Spacings)].map(|skips| {
+        let program = compile_without(&text, skips)?;
+        let mut frame = frame(&program, 1.0, size)?;
+        let choice = vol_runtime_cpu::choose(&program, &mut frame, size, Sampling::CENTRE, max_error);
+        let never = AtomicBool::new(false);
+        let drawn = vol_runtime_cpu::render(&program, &frame, &choice.job, Some(2), &|_| {}, &never);
+        let (image, stats) = drawn.ok_or("cancelled by nobody")?;
+        Ok::<_, Failed>((choice, image, stats.medium_samples))
+    });
+    let ((with, picture, samples), (without, plain, plain_samples)) = (with?, without?);
+    ensure(with.spacings[0] == 1 && with.spacings[1] >= 8, || format!("spacings {:?}", with.spacings))?;
+    ensure(without.spacings == [1, 1], || format!("spacings {:?} when switched off", without.spacings))?;
+    ensure(3 * samples < plain_samples, || format!("{samples} samples instead of {plain_samples}"))?;
+    let changed = color_error(&picture, &plain);
+    ensure(changed > 0.0 && changed < 0.4 * f64::from(max_error), || format!("changed by {changed:e}"))
 }
 
 fn neutral(skip: Skip, path: &Path) -> Result<(), Failed> {

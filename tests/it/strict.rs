@@ -188,8 +188,19 @@ fn same_pictures(gpu: &Gpu, program: &Program, frame: &Frame) -> Result<(), Fail
     ] {
         let job = Job { size: [48, 27], step, shadow_step: 2.0 * step, quadrature, sampling };
         same_picture(gpu, &renderer, program, frame, &job)?;
+        same_picture(gpu, &renderer, program, &spaced(program, frame, 0), &job)?;
     }
     Ok(())
+}
+
+/// A frame with media, of several, that are sampled as far apart as a number says.
+fn spaced(program: &Program, frame: &Frame, number: usize) -> Frame {
+    let mut frame = frame.clone();
+    let media = frame.media.iter_mut().enumerate();
+    for (index, medium) in media.filter(|_| program.media.len() > 1) {
+        medium.spacing = [1, 4, 32, 2, 64, 8, 16][(index + number) % 7];
+    }
+    frame
 }
 
 fn same_picture(
@@ -257,5 +268,6 @@ fn same_scene(gpu: &Gpu, bytes: &[u8], seed: u64) -> Result<(), Failed> {
     // A few samples along each ray, also of scenes without bounds.
     let step = frame.bounds.diagonal().min(1e6) / 24.0;
     let job = Job { size, step, shadow_step: 2.0 * step, quadrature, sampling };
+    let frame = spaced(&program, &frame, (seed / PARTS / DRAWN) as usize);
     same_picture(gpu, &Renderer::new(gpu, &program)?, &program, &frame, &job)
 }

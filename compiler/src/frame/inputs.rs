@@ -118,7 +118,8 @@ impl Inputs {
     }
 
     fn medium(&mut self, medium: &MediumFrame) {
-        let MediumFrame { index, region, interior, extinction, phase, lighting, bounds, cells } = medium;
+        let MediumFrame { index, region, interior, extinction, phase, lighting, bounds, cells, spacing: _ } =
+            medium;
         let functions = [region, interior, extinction, phase];
         functions.into_iter().for_each(|function| self.whole(function.0.into()));
         self.whole(*index as u64);

@@ -27,8 +27,8 @@ use std::fmt::Write;
 pub use words::{PIXEL_WORDS, counts, frame_words, input_words, padded, padded_cells, places, unpack};
 use words::{frame_row, input_row};
 
-/// The integrator.
-const INTEGRATOR: [&str; 16] = [
+/// The integrator, but for what depends on the quadrature.
+const INTEGRATOR: [&str; 14] = [
     include_str!("render.wgsl"),
     include_str!("render/sampling.wgsl"),
     include_str!("render/camera.wgsl"),
@@ -39,12 +39,20 @@ const INTEGRATOR: [&str; 16] = [
     include_str!("render/light_grid.wgsl"),
     include_str!("render/penumbra.wgsl"),
     include_str!("render/occlusion.wgsl"),
+    include_str!("render/spacing.wgsl"),
     include_str!("render/comb.wgsl"),
+    include_str!("render/scatter.wgsl"),
+    include_str!("render/medium.wgsl"),
+];
+
+/// Rays through media by the midpoint rule.
+const MIDPOINT: [&str; 1] = [include_str!("render/midpoint.wgsl")];
+
+/// The same by the corrected form.
+const CORRECTED: [&str; 3] = [
     include_str!("render/chord.wgsl"),
     include_str!("render/panel.wgsl"),
-    include_str!("render/scatter.wgsl"),
     include_str!("render/corrected.wgsl"),
-    include_str!("render/medium.wgsl"),
 ];
 
 /// Invocations of a workgroup along x and y, where none is asked for.
@@ -120,9 +128,13 @@ fn pixel([width, height]: [u32; 2]) -> String {
     format!("const GROUP_WIDTH: u32 = {width}u;\nconst GROUP_HEIGHT: u32 = {height}u;\n{PIXEL}")
 }
 
-/// The integrator, with styles or without.
-fn integrator(program: &Program) -> String {
-    let text = format!("{}\n{}", INTEGRATOR.join("\n"), styles::text(program));
+/// The integrator with one quadrature, with styles or without. Drivers take long over what is never called, too.
+fn integrator(program: &Program, quadrature: Quadrature) -> String {
+    let form = match quadrature {
+        Quadrature::Midpoint => MIDPOINT.join("\n"),
+        Quadrature::Corrected => CORRECTED.join("\n"),
+    };
+    let text = format!("{}\n{form}\n{}", INTEGRATOR.join("\n"), styles::text(program));
     if program.media.len() > MOST_WRITTEN_OUT { text } else { written_out(&text, program.media.len()) }
 }
 
@@ -160,7 +172,7 @@ fn module_text(
         &format!("{BINDINGS}\n{}{bindings}", super::declarations(&rows)),
         &functions,
         &glue(program, quadrature),
-        &integrator(program),
+        &integrator(program, quadrature),
         &entries.join("\n"),
     ]
     .map(String::as_str)
@@ -207,7 +219,7 @@ pub(crate) fn library_text(
         let (row, words) = rows.place_row();
         text += &row.constants(&words, keyword);
     }
-    for part in [&functions, &glue(program, job.quadrature), &integrator(program)] {
+    for part in [&functions, &glue(program, job.quadrature), &integrator(program, job.quadrature)] {
         text.push('\n');
         let lines = part.lines().filter(|line| !line.contains("counted_"));
         lines.for_each(|line| text.extend([line, "\n"]));

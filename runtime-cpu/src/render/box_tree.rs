@@ -144,16 +144,16 @@ impl<R: Real> BoxTree<R> {
         answers
     }
 
-    /// The parts of a ray up to `end` that are within `reach` of boxes, one for each of them.
-    pub(crate) fn spans(&self, ray: &Ray<R>, reach: R, end: R) -> Vec<Span<R>> {
+    /// The parts of a ray up to `end` that are within `reach` of boxes, with the index of each box.
+    pub(crate) fn spans(&self, ray: &Ray<R>, reach: R, end: R) -> Vec<(usize, Span<R>)> {
         let mut spans = Vec::new();
         let reach = splat(reach);
         let meets = |lo, hi| {
             let span = slab(ray, sub(lo, reach), add(hi, reach));
             (span.entry <= span.exit.min(end)).then_some(span)
         };
-        self.visit(meets, |_, span| {
-            spans.push(span);
+        self.visit(meets, |index, span| {
+            spans.push((index, span));
             true
         });
         spans
@@ -274,7 +274,8 @@ mod tests {
                     .into_iter()
                     .map(|[lo, hi]| slab(&ray, sub(lo, splat(0.05)), add(hi, splat(0.05))));
                 let expected = grown.filter(|span| span.is_some() && span.entry <= 4.0).collect();
-                assert_eq!(order(tree.spans(&ray, 0.05, 4.0)), order(expected));
+                let found = tree.spans(&ray, 0.05, 4.0).into_iter().map(|(_, span)| span);
+                assert_eq!(order(found.collect()), order(expected));
                 let met = boxes(count).iter().any(|&[lo, hi]| slab(&ray, lo, hi).is_some());
                 assert_eq!(tree.is_met_by(&ray), met);
             }

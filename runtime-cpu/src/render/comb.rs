@@ -12,12 +12,15 @@
 //! The region of a medium is evaluated only at nodes within a step of one of its cells, and beside those: all
 //! others are outside, and so are their neighbours, so no weight asks for their distances.
 //!
-//! Twin: `compiler/src/wgsl/render/comb.wgsl`.
+//! Along camera rays a node may stand for several steps where only smooth media are: [`super::spacing`].
+//!
+//! Twin: `compiler/src/wgsl/render/comb.wgsl`, of the weights `midpoint.wgsl` beside it.
 
 use super::camera::{Ray, Span, slab};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::{Integrator, Medium};
+use super::spacing::{Near, Parts};
 use crate::isa::Loop;
 use crate::real::{Real, add, splat, sub};
 use std::ops::{Range, RangeInclusive};
@@ -42,15 +45,25 @@ impl NodeRange {
     /// No nodes.
     const NONE: Self = Self { first: 0, last: -1 };
 
+    /// Whether it has none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.first > self.last
+    }
+
     /// Smallest range that holds both.
-    fn union(self, other: Self) -> Self {
-        if self.first > self.last {
+    pub(super) fn union(self, other: Self) -> Self {
+        if self.is_empty() {
             other
-        } else if other.first > other.last {
+        } else if other.is_empty() {
             self
         } else {
             Self { first: self.first.min(other.first), last: self.last.max(other.last) }
         }
+    }
+
+    /// What both hold.
+    fn within(self, other: Self) -> Self {
+        Self { first: self.first.max(other.first), last: self.last.min(other.last) }
     }
 }
 
@@ -65,7 +78,7 @@ struct Runs {
 impl Runs {
     /// Adds a ray with its ranges in any order.
     fn push(&mut self, mut ranges: Vec<NodeRange>) {
-        ranges.retain(|range| range.first <= range.last);
+        ranges.retain(|range| !range.is_empty());
         ranges.sort_unstable_by_key(|range| range.first);
         let start = self.all.len();
         for range in ranges {
@@ -96,8 +109,10 @@ pub(crate) struct Cursor {
 /// The combs of a batch of rays.
 pub(crate) struct Combs<'a, R> {
     pub(super) step: R,
-    /// Where node 0 of each ray is, in steps.
+    /// Where the middle of step 0 of each ray is, in steps.
     offsets: Vec<R>,
+    /// For how many steps each node stands.
+    parts: Parts,
     pub(super) ends: &'a [R],
     /// Nodes that may be inside, per medium and ray; of panels the first node of each.
     runs: Vec<Runs>,
@@ -108,7 +123,8 @@ pub(crate) struct Combs<'a, R> {
 impl<R: Real> Combs<'_, R> {
     /// Distance of a node from the origin of its ray.
     pub(crate) fn distance(&self, ray: usize, node: i32) -> R {
-        node_distance(node, self.step, self.offsets[ray])
+        let (part, _) = self.parts.around(ray, node);
+        node_distance(part.step_of(node), self.step, self.offsets[ray] + part.middle())
     }
 
     /// From the first to the last node of a ray that may be inside some medium.
@@ -155,19 +171,19 @@ impl<R: Real> Combs<'_, R> {
         runs
     }
 
-    /// Where the nodes of runs are, along their rays and in space; `held` between the ends of their rays or not.
+    /// Where the nodes of runs are; `held` between the ends of their rays or not.
     pub(super) fn laid_out(
         &self,
         runs: &[Run],
         rays: &[Ray<R>],
         active: &[Cursor],
         held: bool,
-    ) -> (Vec<R>, Points<R>) {
+    ) -> LaidOut<R> {
         let count = runs.last().map_or(0, |run| run.places.end);
-        let (mut distances, mut points) = (vec![R::ZERO; count], Points::origins(count));
-        let (at, places) = (&mut distances, &mut points);
-        R::vectorized(LayOut { combs: self, runs, rays, active, held, distances: at, points: places });
-        (distances, points)
+        let [distances, halves] = [(); 2].map(|()| vec![R::ZERO; count]);
+        let mut nodes = LaidOut { distances, halves, points: Points::origins(count) };
+        R::vectorized(LayOut { combs: self, runs, rays, active, held, nodes: &mut nodes });
+        nodes
     }
 
     /// Those of the next `nodes` that may be inside a medium.
@@ -183,6 +199,16 @@ impl<R: Real> Combs<'_, R> {
         let near = near.iter().take_while(move |run| run.first <= last);
         near.map(move |run| NodeRange { first: run.first.max(first), last: run.last.min(last) })
     }
+}
+
+/// Nodes of runs.
+pub(super) struct LaidOut<R> {
+    /// Along their rays.
+    pub(super) distances: Vec<R>,
+    /// Half of the length that each stands for.
+    halves: Vec<R>,
+    /// In space.
+    pub(super) points: Points<R>,
 }
 
 /// Nodes of an active ray in a row.
@@ -213,75 +239,139 @@ impl<R: Real> Inside<R> {
     }
 }
 
-/// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
-fn first_node<R: Real>(quadrature: Quadrature, shift: R) -> R {
+/// Where the middle of step 0 is, in steps. Blocks are moved by the same part of their length as steps, down to whole steps: so
+/// they leave the nodes of the finest medium where those are without. Panels begin at the origin, so there node 0 is at or
+/// before it.
+fn first_node<R: Real>(quadrature: Quadrature, shift: R, block: i32) -> R {
+    let half = R::from_f32(0.5);
     match quadrature {
-        Quadrature::Midpoint => R::from_f32(0.5) + shift,
+        Quadrature::Midpoint => {
+            let moved = (R::from_index(block) * (half + shift)).floor();
+            (half + shift) - (R::from_index(block - 1) - moved)
+        }
         Quadrature::Corrected if shift > R::ZERO => shift - R::ONE,
         Quadrature::Corrected => shift,
     }
 }
 
-/// Distance of a node from the origin of the ray.
+/// Distance of a node from the origin of the ray, given its step and where the middle of step 0 would be for it.
 #[inline(always)]
 fn node_distance<R: Real>(node: i32, step: R, offset: R) -> R {
     (R::from_index(node) + offset) * step
 }
 
-/// Nodes that may be inside a medium. Boxes are grown by a step, so that the neighbours of a node
-/// inside are in a range or next to it, and so are the panels on both sides.
-fn node_ranges<R: Real>(ray: &Ray<R>, medium: &Medium<R>, step: R, offset: R, end: R) -> Vec<NodeRange> {
-    let reach = R::from_f32(1.01) * step;
-    let most = R::from_f32(LAST_NODE);
-    let node = |t: R| (t / step - offset).floor().min(most);
-    let range = |span: Span<R>| NodeRange {
-        first: node(span.entry).max(R::ZERO).to_index(),
-        last: node(span.exit.min(end)).to_index(),
-    };
-    let whole = slab(ray, sub(medium.lo, splat(reach)), add(medium.hi, splat(reach)));
-    if whole.entry > whole.exit.min(end) {
-        return Vec::new();
+/// The steps in which a medium may be.
+struct Reached {
+    /// In its box.
+    whole: NodeRange,
+    /// In each of its cells that the ray passes, with the number of the cell; without cells in its box.
+    cells: Vec<(usize, NodeRange)>,
+}
+
+impl Reached {
+    fn new<R: Real>(ray: &Ray<R>, medium: &Medium<R>, spacing: i32, step: R, offset: R, end: R) -> Self {
+        // Boxes are grown by what a node stands for, so that the neighbours of a node inside are in a range or next to it,
+        // and so are the panels on both sides.
+        let reach = (R::from_f32(1.01) * R::from_index(spacing)) * step;
+        let most = R::from_f32(LAST_NODE);
+        let node = |t: R| (t / step - offset).floor().min(most);
+        let range = |span: Span<R>| NodeRange {
+            first: node(span.entry).max(R::ZERO).to_index(),
+            last: node(span.exit.min(end)).to_index(),
+        };
+        let whole = slab(ray, sub(medium.lo, splat(reach)), add(medium.hi, splat(reach)));
+        if whole.entry > whole.exit.min(end) {
+            return Self { whole: NodeRange::NONE, cells: Vec::new() };
+        }
+        let whole = range(whole);
+        if whole.is_empty() || medium.cells.is_empty() {
+            return Self { whole, cells: vec![(0, whole)] };
+        }
+        let spans = medium.cells.spans(ray, reach, end).into_iter();
+        Self { whole, cells: spans.map(|(cell, span)| (cell, range(span))).collect() }
     }
-    if medium.cells.is_empty() {
-        return vec![range(whole)];
-    }
-    let within = |span: Span<R>| Span { entry: span.entry.max(whole.entry), exit: span.exit.min(whole.exit) };
-    medium.cells.spans(ray, reach, end).into_iter().map(within).map(range).collect()
 }
 
 /// Part of the interval between two neighbouring nodes that the first stands for, given the signed
-/// distances of both.
+/// distances of both and half of what each stands for beside other nodes inside.
 #[inline(always)]
-fn share<R: Real>(own: R, other: R, step: R) -> R {
-    if other < R::ZERO { R::from_f32(0.5) * step } else { step * (own / (own - other)) }
+fn share<R: Real>([own, half]: [R; 2], [other, other_half]: [R; 2]) -> R {
+    if other < R::ZERO { half } else { (half + other_half) * (own / (own - other)) }
 }
 
 impl<F: Fields> Integrator<'_, F> {
-    /// Lays out the nodes of each ray up to its end.
+    /// Lays out the nodes of each ray up to its end, one for each step.
     pub(crate) fn combs<'a>(
         &self,
         rays: &[Ray<F::Real>],
         ends: &'a [F::Real],
         step: F::Real,
     ) -> Combs<'a, F::Real> {
-        let offset = |ray: &Ray<F::Real>| first_node(self.scene.quadrature, ray.shift);
+        self.spaced_combs(rays, ends, step, |_| 1)
+    }
+
+    /// The same for camera rays, which have fewer where only smooth media are.
+    pub(super) fn camera_combs<'a>(&self, rays: &[Ray<F::Real>], ends: &'a [F::Real]) -> Combs<'a, F::Real> {
+        match self.scene.quadrature {
+            Quadrature::Midpoint => {
+                self.spaced_combs(rays, ends, self.scene.step, |medium: &Medium<F::Real>| medium.spacing)
+            }
+            Quadrature::Corrected => self.combs(rays, ends, self.scene.step),
+        }
+    }
+
+    fn spaced_combs<'a>(
+        &self,
+        rays: &[Ray<F::Real>],
+        ends: &'a [F::Real],
+        step: F::Real,
+        spacing: impl Fn(&Medium<F::Real>) -> i32,
+    ) -> Combs<'a, F::Real> {
+        let media = &self.scene.media;
+        let block = media.iter().map(&spacing).max().unwrap_or(1);
+        let offset = |ray: &Ray<F::Real>| first_node(self.scene.quadrature, ray.shift, block);
         let offsets: Vec<F::Real> = rays.iter().map(offset).collect();
+        // Find the steps in which each medium may be.
+        let reached = media.iter().map(|medium| {
+            let rays = rays.iter().zip(&offsets).zip(ends);
+            let reached = rays.map(|((path, &offset), &end)| {
+                Reached::new(path, medium, spacing(medium), step, offset, end)
+            });
+            reached.collect::<Vec<_>>()
+        });
+        let reached: Vec<_> = reached.collect();
+        let mut parts = Parts::default();
+        if block > 1 {
+            for ray in 0..rays.len() {
+                let finer = media.iter().zip(&reached).map(|(medium, of)| (spacing(medium), &of[ray].cells));
+                let finer = finer.filter(|&(spacing, _)| spacing < block);
+                parts.push(block, finer.map(|(spacing, cells)| (Near::of(cells), spacing)));
+            }
+        }
+        // Number the nodes.
+        let nodes = |ray: usize, steps: NodeRange| {
+            let [first, last] = [steps.first, steps.last].map(|step| parts.node_at(ray, step));
+            if steps.is_empty() { NodeRange::NONE } else { NodeRange { first, last } }
+        };
         let mut whole = vec![NodeRange::NONE; rays.len()];
-        let mut runs = Vec::with_capacity(self.scene.media.len());
-        for medium in &self.scene.media {
+        let mut runs = Vec::with_capacity(media.len());
+        for reached in reached {
             let mut own = Runs::default();
-            for (ray, ((path, &offset), &end)) in rays.iter().zip(&offsets).zip(ends).enumerate() {
-                own.push(node_ranges(path, medium, step, offset, end));
-                if let [first, .., last] | [first @ last] = own.of(ray) {
-                    whole[ray] = whole[ray].union(NodeRange { first: first.first, last: last.last });
-                }
+            for (ray, Reached { whole: around, cells }) in reached.into_iter().enumerate() {
+                let steps = cells.into_iter().map(|(_, steps)| steps.within(around));
+                let own_nodes = steps.map(|steps| {
+                    whole[ray] = whole[ray].union(steps);
+                    nodes(ray, steps)
+                });
+                own.push(own_nodes.collect());
             }
             runs.push(own);
         }
-        for range in &mut whole {
+        for (ray, range) in whole.iter_mut().enumerate() {
             range.last = range.last.min(range.first + MAX_NODES - 1);
+            *range = nodes(ray, *range);
         }
-        Combs { step, offsets, ends, runs, whole }
+        Combs { step, offsets, parts, ends, runs, whole }
     }
 
     /// Signed distances of one medium's region.
@@ -301,18 +391,19 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Inside<F::Real> {
         // Take the nodes in the medium's range and one more at either side.
         let runs = combs.runs_of(medium, active, self.batches.nodes, [1, 1]);
-        let (distances, points) = combs.laid_out(&runs, rays, active, false);
-        let mut walls = self.region(medium, &points);
+        let nodes = combs.laid_out(&runs, rays, active, false);
+        let mut walls = self.region(medium, &nodes.points);
         let mut weights = vec![F::Real::ZERO; walls.len()];
-        let (runs, distances) = (&runs, &distances);
+        let (runs, walls_of, weights_of) = (&runs, &mut walls, &mut weights);
         F::Real::vectorized(Weigh {
             combs,
             runs,
             active,
-            distances,
-            walls: &mut walls,
-            weights: &mut weights,
+            nodes: &nodes,
+            walls: walls_of,
+            weights: weights_of,
         });
+        let LaidOut { distances, points, .. } = nodes;
         // Keep those inside, with the length that each stands for.
         let mut inside = Inside::with_capacity(walls.len());
         for Run { which, first, places } in runs {
@@ -341,7 +432,7 @@ struct Weigh<'a, 'c, R> {
     combs: &'a Combs<'c, R>,
     runs: &'a [Run],
     active: &'a [Cursor],
-    distances: &'a [R],
+    nodes: &'a LaidOut<R>,
     walls: &'a mut [R],
     weights: &'a mut [R],
 }
@@ -351,32 +442,33 @@ impl<R: Real> Loop for Weigh<'_, '_, R> {
 
     #[inline(always)]
     fn run(self) {
-        let step = self.combs.step;
         for Run { which, first: _, places } in self.runs {
             let end = self.combs.ends[self.active[*which].ray];
             let walls = &mut self.walls[places.clone()];
-            for (wall, &t) in walls.iter_mut().zip(&self.distances[places.clone()]) {
+            let halves = &self.nodes.halves[places.clone()];
+            for (wall, &t) in walls.iter_mut().zip(&self.nodes.distances[places.clone()]) {
                 *wall = wall.max((t - end).max(-t));
             }
             // Of the first and the last node nobody asks.
             let weights = &mut self.weights[places.start + 1..places.end - 1];
             for (index, weight) in weights.iter_mut().enumerate() {
-                let [left, wall, right] = [walls[index], walls[index + 1], walls[index + 2]];
-                *weight = share(wall, left, step) + share(wall, right, step);
+                let left = [walls[index], halves[index]];
+                let own = [walls[index + 1], halves[index + 1]];
+                let right = [walls[index + 2], halves[index + 2]];
+                *weight = share(own, left) + share(own, right);
             }
         }
     }
 }
 
-/// Fills in distances of nodes and their places.
+/// Fills in where nodes are.
 struct LayOut<'a, 'c, R> {
     combs: &'a Combs<'c, R>,
     runs: &'a [Run],
     rays: &'a [Ray<R>],
     active: &'a [Cursor],
     held: bool,
-    distances: &'a mut [R],
-    points: &'a mut Points<R>,
+    nodes: &'a mut LaidOut<R>,
 }
 
 impl<R: Real> Loop for LayOut<'_, '_, R> {
@@ -386,17 +478,29 @@ impl<R: Real> Loop for LayOut<'_, '_, R> {
     fn run(self) {
         for Run { which, first, places } in self.runs {
             let index = self.active[*which].ray;
-            let (ray, offset, end) = (&self.rays[index], self.combs.offsets[index], self.combs.ends[index]);
-            let distances = &mut self.distances[places.clone()];
-            for (distance, node) in distances.iter_mut().zip(*first..) {
-                *distance = node_distance(node, self.combs.step, offset);
+            let Combs { step, offsets, parts, ends, .. } = self.combs;
+            let (ray, offset, end) = (&self.rays[index], offsets[index], ends[index]);
+            let distances = &mut self.nodes.distances[places.clone()];
+            let halves = &mut self.nodes.halves[places.clone()];
+            let mut at = 0;
+            while at < distances.len() {
+                let node = *first + at as i32;
+                let (part, next) = parts.around(index, node);
+                let count = (distances.len() - at).min(next.saturating_sub(node) as usize);
+                let offset = offset + part.middle();
+                let half = R::from_f32(0.5) * (R::from_index(part.spacing) * *step);
+                for (distance, node) in distances[at..at + count].iter_mut().zip(node..) {
+                    *distance = node_distance(part.step_of(node), *step, offset);
+                }
+                halves[at..at + count].fill(half);
+                at += count;
             }
             if self.held {
                 for distance in &mut *distances {
                     *distance = distance.max(R::ZERO).min(end);
                 }
             }
-            for (axis, row) in self.points.rows().into_iter().enumerate() {
+            for (axis, row) in self.nodes.points.rows().into_iter().enumerate() {
                 let (origin, direction) = (ray.origin[axis], ray.direction[axis]);
                 for (value, &t) in row[places.clone()].iter_mut().zip(&*distances) {
                     *value = origin + direction * t;
@@ -416,7 +520,8 @@ mod tests {
             let t = node_distance(node, step, 0.5);
             (entry - t).max(t - exit).max(-t)
         };
-        let weight = |node| share(wall(node), wall(node - 1), step) + share(wall(node), wall(node + 1), step);
+        let node = |node| [wall(node), 0.5 * step];
+        let weight = |index| share(node(index), node(index - 1)) + share(node(index), node(index + 1));
         (0..1000).filter(|&node| wall(node) < 0.0).map(weight).sum()
     }
 

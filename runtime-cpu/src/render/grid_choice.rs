@@ -14,6 +14,7 @@ use super::filled_grids::FilledGrids;
 use super::light_grid::{self, Grid};
 use super::pilot::{MOST_BUDGET, Picture, Pilot, cost};
 use super::scene::{Medium, Scene};
+use super::spacing_choice::spaced;
 use super::step_choice::{Search, StepChoice};
 use crate::interp::Tapes;
 use crate::math::fun::{exp2, log2};
@@ -309,13 +310,15 @@ pub struct Choice {
     pub job: Job,
     /// For each light; the frame has the grids already.
     pub grids: Vec<GridChoice>,
-    /// Estimated root mean square error of the picture's colours over that of the colours, of steps and grids
-    /// together; above what was asked for if that could not be met.
+    /// For each medium, see [`vol_compiler::frame::MediumFrame::spacing`]; the frame has them already.
+    pub spacings: Vec<u32>,
+    /// Estimated root mean square error of the picture's colours over that of the colours, of steps, grids and
+    /// spacings together; above what was asked for if that could not be met.
     pub estimate: f32,
 }
 
-/// Chooses steps ([`choose_step`](super::choose_step)) and grids ([`choose_light_grids`]) for a picture with an error of at most
-/// `max_error`, and puts the grids into the frame. The result depends on the arguments alone.
+/// Chooses steps ([`choose_step`](super::choose_step)), grids ([`choose_light_grids`]) and the spacings of media for a picture
+/// with an error of at most `max_error`, and puts grids and spacings into the frame. The result depends on the arguments alone.
 pub fn choose(
     program: &Program,
     frame: &mut Frame,
@@ -339,8 +342,14 @@ pub fn choose_with(
     if frame.media.is_empty() {
         let grids = vec![GridChoice::default(); frame.lights.len()];
         frame.light_grids = vec![None; grids.len()];
-        return Choice { job: StepChoice::ANY.job(size, sampling), grids, estimate: 0.0 };
+        return Choice {
+            job: StepChoice::ANY.job(size, sampling),
+            grids,
+            spacings: Vec::new(),
+            estimate: 0.0,
+        };
     }
+    frame.media.iter_mut().for_each(|medium| medium.spacing = 1);
     let tapes = Tapes::of_frame(program, frame);
     let mut lit = Frame { light_grids: coarse_grids(program, frame, &tapes, filled), ..frame.clone() };
     let (mut grids, mut taken, mut steps) = (vec![GridChoice::default(); frame.lights.len()], 0.0, None);
@@ -353,17 +362,19 @@ pub fn choose_with(
         let choices = choose_by(&pilot, &job, max_error, filled);
         grids = choices.lights;
         taken = grids.iter().filter_map(GridChoice::taken).fold(0.0, f32::hypot);
-        steps = (!choices.marches).then(|| search.choice(rest(max_error, taken)));
+        steps = (!choices.marches).then(|| search.choices(rest(max_error, taken)));
     }
     lit.light_grids = grids.iter().map(|choice| choice.grid.clone()).collect();
     let steps = steps.unwrap_or_else(|| {
         // Where lights are marched to, their steps count.
         let left = rest(max_error, taken);
-        Search::new(&Pilot::new(&lit, &tapes, size), left).choice(left)
+        Search::new(&Pilot::new(&lit, &tapes, size), left).choices(left)
     });
-    let job = steps.job(size, sampling);
+    let spaced = spaced(&Pilot::new(&lit, &tapes, size), steps, max_error);
+    frame.media.iter_mut().zip(&spaced.spacings).for_each(|(medium, &spacing)| medium.spacing = spacing);
     frame.light_grids = lit.light_grids;
-    Choice { job, grids, estimate: steps.estimate.hypot(taken) }
+    let estimate = spaced.steps.estimate.hypot(taken).hypot(spaced.error);
+    Choice { job: spaced.steps.job(size, sampling), grids, spacings: spaced.spacings, estimate }
 }
 
 /// The error that is left beside another one, if both are independent.

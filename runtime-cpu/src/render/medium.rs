@@ -9,7 +9,7 @@
 //! step for nothing. How far it is from the first says little about one ray: it is a measure of how much
 //! there is to miss (algorithms.md §5.1), and its rms over the picture is scaled to what the pilot found.
 //!
-//! Twin: `compiler/src/wgsl/render/medium.wgsl`.
+//! Twin: `compiler/src/wgsl/render/medium.wgsl`, of the midpoint form `midpoint.wgsl` beside it.
 
 use super::camera::Ray;
 use super::chunk::Chunk;
@@ -60,7 +60,7 @@ impl<F: Fields> Integrator<'_, F> {
     pub(crate) fn march(&mut self, rays: &[Ray<F::Real>], ends: &[F::Real]) -> Vec<Glow<F::Real>> {
         let mut glows = vec![Glow::clear(); rays.len()];
         let styled = self.style_rays(rays, ends);
-        let combs = self.combs(rays, ends, self.scene.step);
+        let combs = self.camera_combs(rays, ends);
         let mut active = combs.active();
         while !active.is_empty() {
             let before = self.stats.medium_samples;

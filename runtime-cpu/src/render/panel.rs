@@ -20,7 +20,7 @@
 
 use super::camera::Ray;
 use super::chord::{Chord, Gap};
-use super::comb::{Combs, Cursor, Run};
+use super::comb::{Combs, Cursor, LaidOut, Run};
 use super::fields::{Fields, Points};
 use super::scatter::Place;
 use super::scene::Integrator;
@@ -180,7 +180,7 @@ impl<F: Fields> Integrator<'_, F> {
     ) -> Found<F::Real> {
         // Take the nodes of the panels in the medium's range.
         let runs = combs.runs_of(medium, active, self.batches.nodes, [0, 1]);
-        let (distances, points) = combs.laid_out(&runs, rays, active, true);
+        let LaidOut { distances, points, .. } = combs.laid_out(&runs, rays, active, true);
         let region = self.region(medium, &points);
         let is_inside = |index: usize| region[index] < F::Real::ZERO;
         let nodes = (0..region.len()).filter(|&index| is_inside(index)).count();

@@ -107,6 +107,11 @@ impl<'a> Pilot<'a> {
 
     /// Rms of the difference over rms of the finer picture, from the rays that both have.
     pub(super) fn difference(&self, coarse: &Picture, fine: &Picture) -> f32 {
+        self.difference_in(coarse, fine, fine)
+    }
+
+    /// Rms of the difference over rms of the picture in which it counts, from the rays that all have.
+    pub(super) fn difference_in(&self, coarse: &Picture, fine: &Picture, whole_picture: &Picture) -> f32 {
         let (mut changed, mut variance, mut whole) = (0.0, 0.0, 0.0);
         for stratum in 0..2 {
             let pairs = coarse[stratum].iter().zip(&fine[stratum]);
@@ -118,7 +123,8 @@ impl<'a> Pilot<'a> {
             let spread: f64 = changes.iter().map(|change| (change - mean).powi(2)).sum();
             changed += share * sum;
             variance += share * share * spread * (count / (count - 1.0).max(1.0));
-            whole += share * fine[stratum][..changes.len()].iter().map(|ray| squared(ray.color)).sum::<f64>();
+            let counting = whole_picture[stratum].iter().take(changes.len());
+            whole += share * counting.map(|ray| squared(ray.color)).sum::<f64>();
         }
         let bound = changed + SAFETY * variance.sqrt();
         if bound > 0.0 { (bound / whole.max(f64::MIN_POSITIVE)).sqrt() as f32 } else { 0.0 }

@@ -107,6 +107,8 @@ pub(crate) struct Medium<R> {
     pub(crate) hi: Vec3<R>,
     /// Boxes in which it is; none if it may be anywhere in its own.
     pub(crate) cells: BoxTree<R>,
+    /// See [`super::spacing`].
+    pub(crate) spacing: i32,
 }
 
 /// See [`vol_compiler::frame::LightFrame`].
@@ -239,6 +241,7 @@ fn media<R: Real>(frame: &Frame) -> Vec<Medium<R>> {
             lo: vector(bounds.lo),
             hi: vector(bounds.hi),
             cells: BoxTree::new(cells.iter().map(|cell| [vector(cell.lo), vector(cell.hi)]).collect()),
+            spacing: medium.spacing as i32,
         })
     };
     frame.media.iter().filter_map(medium).collect()

@@ -2,7 +2,7 @@
 //!
 //! Media are lit as if every light were a point: they blur the edges of their shadows themselves.
 //!
-//! Twin: `compiler/src/wgsl/render/shadow.wgsl`.
+//! Twin: `compiler/src/wgsl/render/shadow.wgsl`, of depths by marching `midpoint.wgsl` and `corrected.wgsl` beside it.
 
 use super::camera::{FAR, Ray};
 use super::comb::{Combs, Cursor};

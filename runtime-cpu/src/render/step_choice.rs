@@ -40,7 +40,7 @@ const GROWTH: u64 = 4;
 const SHADOW_RATIO: f32 = 2.0;
 
 /// Time for a sample of the corrected form over that of the midpoint form: measured, 1.2 to 1.3 with grids of lights.
-const CORRECTED_COST: f32 = 1.25;
+pub(super) const CORRECTED_COST: f32 = 1.25;
 
 /// An error that exceeds what is allowed by no more needs no further round: the step for it lies between the last two.
 const NEARLY: f32 = 1.5;
@@ -118,6 +118,15 @@ pub fn least_step(frame: &Frame) -> f32 {
     // Boxes are grown by a step to each side.
     let through = bounds.diagonal() / (MAX_NODES - 8) as f32;
     through.max(bounds.union(&eye).diagonal() / LAST_NODE)
+}
+
+/// Ways to meet an error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepChoices {
+    /// With a sample for each step.
+    pub(super) cheapest: StepChoice,
+    /// By the midpoint rule, if it meets the error: samples of it can be farther apart in places.
+    pub(super) midpoint: Option<StepChoice>,
 }
 
 /// Both pictures at one step.
@@ -270,7 +279,12 @@ impl<'a> Search<'a> {
 
     /// The cheapest quadrature that meets the error, else the best one.
     pub(super) fn choice(&self, max_error: f32) -> StepChoice {
-        let best = self.candidates().into_iter().map(|form| {
+        self.choices(max_error).cheapest
+    }
+
+    /// The same, and the midpoint rule beside it.
+    pub(super) fn choices(&self, max_error: f32) -> StepChoices {
+        let found = self.candidates().into_iter().map(|form| {
             let (step, estimate) = between(form.step, form.error, form.before, max_error);
             let work = form.work(step);
             (
@@ -279,9 +293,12 @@ impl<'a> Search<'a> {
                 StepChoice::new(step, form.quadrature, estimate),
             )
         });
-        let best =
-            best.min_by(|a, b| (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal));
-        match (best, self.rounds.as_slice()) {
+        let found: Vec<_> = found.collect();
+        let midpoint = found.iter().find(|(fails, _, choice)| !fails && choice.quadrature == FORMS[0]);
+        let midpoint = midpoint.map(|(_, _, choice)| *choice);
+        let order = |a: &(bool, f32, _), b: &(bool, f32, _)| (a.0, a.1).partial_cmp(&(b.0, b.1));
+        let best = found.into_iter().min_by(|a, b| order(a, b).unwrap_or(std::cmp::Ordering::Equal));
+        let cheapest = match (best, self.rounds.as_slice()) {
             (Some((_, _, choice)), _) => choice,
             // One step only: that both forms agree is all there is to say.
             (None, [only]) => {
@@ -290,7 +307,8 @@ impl<'a> Search<'a> {
             }
             // Not even that: all of the picture may be wrong.
             (None, _) => StepChoice::new(self.step, Quadrature::Midpoint, 1.0),
-        }
+        };
+        StepChoices { cheapest, midpoint }
     }
 }
 

@@ -7,17 +7,20 @@ const NO_RUN: f32 = 8388608.0;
 
 struct Comb {
     step: f32,
-    // Where node 0 is, in steps.
+    // Where the middle of step 0 is, in steps.
     offset: f32,
+    // Steps that are divided alike; see spacing.wgsl.
+    block: i32,
     end: f32,
-    // Nodes that may be inside some medium.
+    // Steps that may be inside some medium.
     first: i32,
     last: i32,
     // The same for each medium, and of those this run or the next one.
     all: array<Runs, MEDIUM_SLOTS>,
     runs: array<vec2i, MEDIUM_SLOTS>,
-    // Signed distances of each medium at the node before and at the next one.
+    // Signed distances of each medium at the node before, how many steps that stands for, and at the next one.
     before: array<f32, MEDIUM_SLOTS>,
+    steps_before: i32,
     own: array<f32, MEDIUM_SLOTS>,
 }
 
@@ -28,9 +31,11 @@ struct Runs {
     last: vec4f,
 }
 
-// Where node 0 is, in steps. Panels begin at the origin, so there it is at or before it.
-fn first_node(shift: f32) -> f32 {
-    return select(0.5 + shift, select(shift, shift - 1.0, shift > 0.0), CORRECTED);
+// Where the middle of step 0 is, in steps. Panels begin at the origin, so there node 0 is at or before it.
+fn first_node(shift: f32, block: i32) -> f32 {
+    let moved = floor(f32(block) * (0.5 + shift));
+    let middle = (0.5 + shift) - (f32(block - 1) - moved);
+    return select(middle, select(shift, shift - 1.0, shift > 0.0), CORRECTED);
 }
 
 fn node_distance(node: i32, step_size: f32, offset: f32) -> f32 {
@@ -41,11 +46,11 @@ fn medium_word(medium: u32) -> u32 {
     return AT_MEDIA + (MEDIUM_WORDS * medium);
 }
 
-// Nodes that may be inside a box; none if the last is less than the first. The box is grown by a step, so that the
-// neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
-fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2i {
+// Steps that may be inside a box; none if the last is less than the first. The box is grown by what a node stands for, so that
+// the neighbours of a node inside are in the range or next to it, and so are the panels on both sides.
+fn node_range(ray: Ray, lo: vec3f, hi: vec3f, spacing: i32, comb: ptr<function, Comb>) -> vec2i {
     let step_size = (*comb).step;
-    let reach = vec3f(1.01 * step_size);
+    let reach = vec3f((1.01 * f32(spacing)) * step_size);
     let span = slab(ray, lo - reach, hi + reach);
     let leave = min(span.leave, (*comb).end);
     // Node numbers stay where f32 knows them and a half.
@@ -55,10 +60,11 @@ fn node_range(ray: Ray, lo: vec3f, hi: vec3f, comb: ptr<function, Comb>) -> vec2
 }
 
 // Lays out the nodes of the ray up to its end.
-fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
+fn new_comb(ray: Ray, end: f32, step_size: f32, block: i32) -> Comb {
     var comb: Comb;
     comb.step = step_size;
-    comb.offset = first_node(ray.shift);
+    comb.block = block;
+    comb.offset = first_node(ray.shift, block);
     comb.end = end;
     comb.first = NO_NODE;
     comb.last = -1;
@@ -79,8 +85,9 @@ fn new_comb(ray: Ray, end: f32, step_size: f32) -> Comb {
 // medium without cells.
 fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     let at = medium_word(medium);
+    let spacing = spacing_of(comb, medium);
     var runs = Runs(vec4f(NO_RUN), vec4f(-1.0));
-    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), comb);
+    let whole = node_range(ray, word3(at + 1u), word3(at + 4u), spacing, comb);
     if ((whole.x > whole.y) | (vol_frame_word(at) == 0.0)) {
         return runs;
     }
@@ -90,7 +97,7 @@ fn find_runs(ray: Ray, medium: u32, comb: ptr<function, Comb>) -> Runs {
     }
     var cell = AT_CELLS + (CELLS_WORDS * medium);
     for (var index = 0u; index < count; index++) {
-        let range = node_range(ray, word3(cell), word3(cell + 3u), comb);
+        let range = node_range(ray, word3(cell), word3(cell + 3u), spacing, comb);
         if (range.x <= range.y) {
             runs = add_run(runs, range);
         }
@@ -133,59 +140,33 @@ fn run_from(runs: Runs, node: i32) -> vec2i {
     return vec2i(i32(least), select(end, NO_NODE, least == NO_RUN));
 }
 
+// The first node to look at: `lead` before the first of a run. More than the last if there is none.
+fn start_node(comb: ptr<function, Comb>, lead: i32) -> Node {
+    let origin = Node(0, spacing_at(comb, 0), 0);
+    var before = origin;
+    for (var back = 0; back < lead; back++) {
+        before = node_before(comb, before);
+    }
+    return node_ahead(comb, before, (*comb).first, lead);
+}
+
 // The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn next_node(comb: ptr<function, Comb>, node: i32, lead: i32) -> i32 {
-    let after = node + 1;
+fn next_node(comb: ptr<function, Comb>, node: Node, lead: i32) -> Node {
+    let after = node_after(comb, node);
     var first = NO_NODE;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        if ((*comb).runs[medium].y < after) {
-            (*comb).runs[medium] = run_from((*comb).all[medium], after);
+        if ((*comb).runs[medium].y < after.first) {
+            (*comb).runs[medium] = run_from((*comb).all[medium], after.first);
         }
         first = min(first, (*comb).runs[medium].x);
     }
-    let next = max(after, first - lead);
+    let next = node_ahead(comb, after, first, lead);
     // Distances say nothing about nodes farther on.
+    let is_farther = next.first > after.first;
+    (*comb).steps_before = node.steps;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        (*comb).before[medium] = select((*comb).before[medium], FAR, next > after);
-        (*comb).own[medium] = select((*comb).own[medium], FAR, next > after);
+        (*comb).before[medium] = select((*comb).before[medium], FAR, is_farther);
+        (*comb).own[medium] = select((*comb).own[medium], FAR, is_farther);
     }
     return next;
-}
-
-// Signed distance of a node at a distance t from the nearest of: the medium's wall, the ray's two ends.
-fn wall(ray: Ray, medium: u32, run: vec2i, t: f32, node: i32, end: f32) -> f32 {
-    var region = FAR;
-    if ((node >= (run.x - 1)) & (node <= (run.y + 1))) {
-        region = medium_region(medium, ray_at(ray, t));
-    }
-    return max(region, max(t - end, -t));
-}
-
-// Part of the interval between two neighbouring nodes that the first stands for, given the signed
-// distances of both.
-fn share(own: f32, other: f32, step_size: f32) -> f32 {
-    let divisor = select(-1.0, own - other, own < other);
-    let part = step_size * (own / divisor);
-    return select(part, 0.5 * step_size, other < 0.0);
-}
-
-// The length of ray that a node stands for in each medium, and whether any is not 0. Nodes must
-// come in order, from two before each run: so that regions are asked at one place of the text,
-// since drivers write them out at each.
-fn weigh(ray: Ray, comb: ptr<function, Comb>, node: i32, weights: ptr<function, array<f32, MEDIUM_SLOTS>>) -> bool {
-    var any_inside = false;
-    let step_size = (*comb).step;
-    let t = node_distance(node + 1, step_size, (*comb).offset);
-    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
-        let before = (*comb).before[medium];
-        let own = (*comb).own[medium];
-        let after = wall(ray, medium, (*comb).runs[medium], t, node + 1, (*comb).end);
-        let weight = share(own, before, step_size) + share(own, after, step_size);
-        let is_inside = (own < 0.0) & (node >= (*comb).first);
-        (*weights)[medium] = select(0.0, weight, is_inside);
-        any_inside = any_inside | is_inside;
-        (*comb).before[medium] = own;
-        (*comb).own[medium] = after;
-    }
-    return any_inside;
 }

@@ -26,13 +26,15 @@ struct Panels {
     lit: bool,
 }
 
-fn march_panels(ray: Ray, end: f32) -> Glow {
+// Follows the ray through the media up to its end.
+fn march(ray: Ray, end: f32) -> Glow {
     var glow = clear_glow();
     var styled = style_rays(ray, end);
-    var comb = new_comb(ray, end, vol_frame_word(AT_STEP));
+    var comb = new_comb(ray, end, vol_frame_word(AT_STEP), 1);
     var panels: Panels;
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = comb.first - 1; node <= comb.last; node = next_node(&comb, node, 1)) {
+    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, 1)) {
+        let node = at.first;
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
         var lit_after = false;
@@ -176,4 +178,50 @@ fn panels_sent(panels: ptr<function, Panels>) -> vec3f {
         }
     }
     return sent;
+}
+
+// Integral of the extinction along the ray.
+fn optical_depth(ray: Ray, end: f32) -> vec3f {
+    var comb = new_comb(ray, end, vol_frame_word(AT_SHADOW_STEP), 1);
+    // Density and extinction of each medium at the node before.
+    var before: array<vec4f, MEDIUM_SLOTS>;
+    var depth = vec3f(0.0);
+    // The panel before a run is nothing: its end is the beginning of the first.
+    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, 1)) {
+        // Optical depth of each panel, all media together.
+        depth += panel_depth(ray, &comb, node.first, &before);
+        // Go on while the ray is not dark yet.
+        if (smallest(depth) > OPAQUE) {
+            break;
+        }
+    }
+    return depth;
+}
+
+fn panel_depth(ray: Ray, comb: ptr<function, Comb>, node: i32, before: ptr<function, array<vec4f, MEDIUM_SLOTS>>) -> vec3f {
+    let step_size = (*comb).step;
+    let t = vec2f(panel_node(comb, node), panel_node(comb, node + 1));
+    var depth = vec3f(0.0);
+    for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
+        let own = (*comb).own[medium];
+        let between = find_walls(ray, medium, comb, node, t);
+        let stretch = panel_stretch(own, t, between);
+        var first = (*before)[medium];
+        var last = vec4f(0.0);
+        // Media are asked at one place of the text, since drivers write it out at each.
+        let ends = new_ends(own, between);
+        for (var end = ends.x; end < ends.y; end++) {
+            let at_stop = end == STOP_END;
+            let matter = medium_extinction(medium, ray_at(ray, select(stretch.x, stretch.y, at_stop)));
+            first = select(matter, first, at_stop);
+            last = select(last, matter, at_stop);
+        }
+        (*before)[medium] = select(vec4f(0.0), last, between.next < 0.0);
+        if (has_panel(comb, node, t, own, between)) {
+            let open = open_ends(comb, node, t, own, between.next);
+            let masses = panel_masses(step_size, stretch.y - stretch.x, vec2f(first.x, last.x), open);
+            depth += (first.yzw * masses.x) + (last.yzw * masses.y);
+        }
+    }
+    return depth;
 }

@@ -48,6 +48,7 @@ pub(super) fn glue(program: &Program, quadrature: Quadrature) -> String {
     let lights = &program.lights;
     let switches = [
         ("CORRECTED", quadrature == Quadrature::Corrected),
+        ("SPACED", quadrature == Quadrature::Midpoint && media > 1),
         ("SOFT_LIGHTS", lights.iter().any(|light| light.size.is_some())),
         ("OCCLUDING_LIGHTS", lights.iter().any(|light| light.occlusion.is_some())),
         ("LIGHT_GRIDS", media > 0 && !lights.is_empty()),

@@ -121,6 +121,7 @@ fn frame(program: &Program) -> Frame {
             lighting: Lighting::Unshadowed,
             bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
             cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }, Aabb { lo: [-1.0; 3], hi: [0.0; 3] }],
+            spacing: 1,
         }],
         lights: vec![LightFrame {
             distant: true,

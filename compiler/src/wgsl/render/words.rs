@@ -18,7 +18,7 @@
 //! | 25 | `AT_TOLERANCE` | error at which a pixel takes no more of them, 0 for as many everywhere |
 //! | 26 | `AT_BUDGET` | samples to take now; each pixel goes on where `vol_output` says that it is |
 //! | 27 | `AT_OBJECTS` | 8 words per object of the program: state (0 absent, 1 lit, 2 shows its normals), lo xyz, hi xyz, safe scale (0: by `object_steepness`) |
-//! | 27 + 8 objects | `AT_MEDIA` | 8 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, number of its cells |
+//! | 27 + 8 objects | `AT_MEDIA` | 9 words per medium of the program: state (0 absent, 1 lights do not matter, 2 unshadowed, 3 shadowed), lo xyz, hi xyz, number of its cells, its spacing |
 //! | after them | `AT_LIGHTS` | 12 words per light of the program, those of the frame first: distant, position or direction xyz, color rgb, shadows, size, distance of occlusion, word of its grid (0: none), word of its style's record (0: none) |
 //! | after them | `AT_GRIDS` | 28 words per light of the program, the grids of the frame first, see [`LightGrid`]: distant, origin xyz, u xyz, v xyz, w xyz, lo, scale and counts along u, v, w, tint rgb, words per point (1 or 3), word of its first column in `vol_input`, whether it is a spline |
 //! | after them | | records of the program's styles, those of the frame's lights first, see [`styles`] |
@@ -51,7 +51,7 @@ pub(super) const OBJECT_WORDS: usize = 8;
 pub(super) const LIGHT_WORDS: usize = 12;
 
 /// Words of a medium.
-pub(super) const MEDIUM_WORDS: usize = 8;
+pub(super) const MEDIUM_WORDS: usize = 9;
 
 /// Words of a cell.
 pub(super) const CELL_WORDS: usize = 6;
@@ -198,7 +198,8 @@ pub fn frame_words(program: &Program, frame: &Frame, job: &Job, tile: [u32; 4], 
             Lighting::Shadowed => 3.0,
         };
         let padded_cells = padded_cells(medium);
-        media[medium.index] = record(state, padded(&medium.bounds), [padded_cells.len() as f32]);
+        media[medium.index] =
+            record(state, padded(&medium.bounds), [padded_cells.len() as f32, medium.spacing as f32]);
         let corners = padded_cells.iter().flat_map(|cell| [cell.lo, cell.hi]).flatten();
         cells[medium.index].iter_mut().zip(corners).for_each(|(word, corner)| *word = corner);
     }

@@ -1,6 +1,6 @@
 //! Absorption, emission and single scattering against closed forms.
 
-use super::support::{Body, Gas, MATT, World, constant, glowing, mixed, norm, toward};
+use super::support::{Body, Gas, MATT, World, bits, constant, glowing, mixed, norm, toward};
 use std::f64::consts::PI;
 use vol_compiler::frame::{Aabb, Image, Pixel, Quadrature};
 use vol_compiler::program::Lighting;
@@ -51,6 +51,35 @@ fn slab_absorbs_by_beer_lambert() {
             assert_close(pixel.color, through, 1e-5);
             assert_eq!(pixel.depth, f32::INFINITY);
         }
+    }
+}
+
+/// Nothing is left out or counted twice where one node stands for another number of steps than the next.
+#[test]
+fn slabs_absorb_as_well_where_spacings_differ() {
+    for (spacings, step) in
+        [([1, 8], 0.031), ([1, 16], 0.05), ([2, 16], 0.031), ([4, 1], 0.1), ([8, 8], 0.03)]
+    {
+        let mut world = slab(0.0, 0.0, Lighting::None);
+        let inner = [0.9, 0.1, 0.4];
+        world.medium(Gas::uniform([3.0, 3.0, 0.3], [0.0; 3], inner, [0.0; 3], Lighting::None));
+        world.frame.background = [1.0; 3];
+        world.frame.media.iter_mut().zip([spacings[1], spacings[0]]).for_each(|(medium, spacing)| {
+            medium.spacing = spacing;
+        });
+        let image = world.render(SIZE, step);
+        for (index, pixel) in image.pixels.iter().enumerate() {
+            for ((got, outer), inner) in pixel.transmittance.into_iter().zip(EXTINCTION).zip(inner) {
+                let want = (-(outer + 0.3 * inner) * chord(index)).exp();
+                assert!((f64::from(got) - want).abs() < 1e-5, "{got} for {want}, {spacings:?}, step {step}");
+            }
+        }
+        // The other quadrature takes no notice.
+        let mut even = World { quadrature: Quadrature::Corrected, ..world };
+        let spaced = even.render(SIZE, step);
+        even.frame.media.iter_mut().for_each(|medium| medium.spacing = 1);
+        let numbers = |image: Image| image.pixels.iter().map(bits).collect::<Vec<_>>();
+        assert_eq!(numbers(spaced), numbers(even.render(SIZE, step)));
     }
 }
 

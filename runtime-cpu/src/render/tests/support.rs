@@ -262,7 +262,8 @@ impl World {
         let [extinction, phase] = [self.function(gas.extinction), self.function(gas.phase)];
         let index = self.program.media.len();
         let (lighting, bounds, cells) = (gas.lighting, gas.bounds, vec![gas.bounds]);
-        let frame = MediumFrame { index, region, interior, extinction, phase, lighting, bounds, cells };
+        let frame =
+            MediumFrame { index, region, interior, extinction, phase, lighting, bounds, cells, spacing: 1 };
         self.frame.media.push(frame);
         self.program.media.push(Medium {
             name: "gas".to_owned(),

@@ -121,7 +121,7 @@ fn frame(program: &Program) -> Frame {
             lighting: Lighting::Unshadowed,
             bounds: Aabb { lo: [0.0; 3], hi: [0.0; 3] },
             cells: vec![Aabb { lo: [0.0; 3], hi: [0.0; 3] }, Aabb { lo: [-1.0; 3], hi: [0.0; 3] }],
-            spacing: 1,
+            spacing: 16,
         }],
         lights: vec![LightFrame {
             distant: true,
@@ -155,7 +155,7 @@ fn modules_are_accepted() {
 
 #[test]
 fn loops_over_few_media_are_written_out() {
-    let text = |media| integrator(&program(0, media));
+    let text = |media| integrator(&program(0, media), Quadrature::Midpoint);
     let (none, two, many) = (text(0), text(2), text(MOST_WRITTEN_OUT + 1));
     assert!(!none.contains("let medium ="));
     let loops = many.matches(MEDIA_LOOP).count();
@@ -192,7 +192,7 @@ fn words_stand_where_the_shader_looks() {
     assert_eq!(words[objects..objects + 8], [0.0; 8], "an absent object");
     let (lo, hi) = (-INFINITE * 1.00001, INFINITE * 1.00001);
     assert_eq!(words[objects + 8..media], [2.0, lo, lo, lo, hi, hi, hi, 0.25]);
-    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 2.0]);
+    assert_eq!(words[media..lights], [2.0, 0., 0., 0., 0., 0., 0., 2.0, 16.0]);
     assert_eq!(words[lights..lights + 11], [1.0, 0.0, 1.0, 0.0, 2.0, 2.0, 2.0, 1.0, 0.0, 0.0, 0.0]);
     let by = 1e-5;
     let cells = [[-by; 3], [by; 3], [-1.0 - by; 3], [by; 3]].concat();

@@ -11,8 +11,8 @@
 //!    them: `corrected`, by `panel`; `scatter` lights the nodes.
 //! 5. `film`: `color = L + T * (surface or background)`, tiles, threads; `sampling` takes the mean.
 //!
-//! `pilot` chooses the comb's step and which of the two, after a `survey`; `grid_choice` where `shadow` looks depths up
-//! in a `light_grid`.
+//! `step_choice` chooses the comb's step and which of the two by the rays of a `pilot`, after a `survey`; `spacing_choice` which media are
+//! sampled farther apart; `grid_choice` where `shadow` looks depths up in a `light_grid`.
 //!
 //! Two further ways through the media, for comparison and on the CPU only, are behind `method`: `fixed_step`
 //! is the plain marcher of the literature, `monte_carlo` an unbiased oracle that shares nothing with the comb.

@@ -3493,57 +3493,56 @@ Vol_in_Node vol_in_start_node(inout Vol_in_Comb comb_9, int lead_1)
     return vol_in_node_6;
 }
 
-Vol_in_Node vol_in_node_after(inout Vol_in_Comb comb_10, Vol_in_Node node_3)
+Vol_in_Node vol_in_next_node(inout Vol_in_Comb comb_10, Vol_in_Node node_3, Vol_in_Node after, int lead_2)
 {
-    Vol_in_Node after = (Vol_in_Node)0;
+    int first_1 = VOL_IN_NO_NODE;
+
+    {
+        int _e10 = comb_10.runs[0u].y;
+        if ((_e10 < after.first)) {
+            Vol_in_Runs _e17 = comb_10.all_[0u];
+            const int2 _e19 = vol_in_run_from(_e17, after.first);
+            comb_10.runs[0u] = _e19;
+        }
+        int _e20 = first_1;
+        int _e24 = comb_10.runs[0u].x;
+        first_1 = min(_e20, _e24);
+    }
+    int _e26 = first_1;
+    const Vol_in_Node _e27 = vol_in_node_ahead(comb_10, after, _e26, lead_2);
+    bool is_farther = (_e27.first > after.first);
+    comb_10.steps_before = node_3.steps;
+    {
+        float _e38 = comb_10.before[0u];
+        comb_10.before[0u] = (is_farther ? VOL_IN_FAR : _e38);
+        float _e45 = comb_10.own[0u];
+        comb_10.own[0u] = (is_farther ? VOL_IN_FAR : _e45);
+    }
+    const Vol_in_Node vol_in_node_7 = _e27;
+    return vol_in_node_7;
+}
+
+Vol_in_Node vol_in_node_after(inout Vol_in_Comb comb_11, Vol_in_Node node_4)
+{
+    Vol_in_Node after_1 = (Vol_in_Node)0;
     bool local_6 = (bool)0;
 
-    after = ConstructVol_in_Node(asint(asuint(node_3.first) + asuint(node_3.steps)), node_3.steps, asint(asuint(node_3.number) + asuint(int(1))));
+    after_1 = ConstructVol_in_Node(asint(asuint(node_4.first) + asuint(node_4.steps)), node_4.steps, asint(asuint(node_4.number) + asuint(int(1))));
     if (VOL_IN_SPACED) {
-        int _e15 = after.first;
-        const bool _e16 = vol_in_is_block_begun(comb_10, _e15);
+        int _e15 = after_1.first;
+        const bool _e16 = vol_in_is_block_begun(comb_11, _e15);
         local_6 = _e16;
     } else {
         local_6 = false;
     }
     bool _e18 = local_6;
     if (_e18) {
-        int _e21 = after.first;
-        const int _e22 = vol_in_spacing_at(comb_10, _e21);
-        after.steps = _e22;
+        int _e21 = after_1.first;
+        const int _e22 = vol_in_spacing_at(comb_11, _e21);
+        after_1.steps = _e22;
     }
-    Vol_in_Node _e23 = after;
-    const Vol_in_Node vol_in_node_7 = _e23;
-    return vol_in_node_7;
-}
-
-Vol_in_Node vol_in_next_node(inout Vol_in_Comb comb_11, Vol_in_Node node_4, int lead_2)
-{
-    int first_1 = VOL_IN_NO_NODE;
-
-    const Vol_in_Node _e3 = vol_in_node_after(comb_11, node_4);
-    {
-        int _e10 = comb_11.runs[0u].y;
-        if ((_e10 < _e3.first)) {
-            Vol_in_Runs _e17 = comb_11.all_[0u];
-            const int2 _e19 = vol_in_run_from(_e17, _e3.first);
-            comb_11.runs[0u] = _e19;
-        }
-        int _e20 = first_1;
-        int _e24 = comb_11.runs[0u].x;
-        first_1 = min(_e20, _e24);
-    }
-    int _e26 = first_1;
-    const Vol_in_Node _e27 = vol_in_node_ahead(comb_11, _e3, _e26, lead_2);
-    bool is_farther = (_e27.first > _e3.first);
-    comb_11.steps_before = node_4.steps;
-    {
-        float _e38 = comb_11.before[0u];
-        comb_11.before[0u] = (is_farther ? VOL_IN_FAR : _e38);
-        float _e45 = comb_11.own[0u];
-        comb_11.own[0u] = (is_farther ? VOL_IN_FAR : _e45);
-    }
-    const Vol_in_Node vol_in_node_8 = _e27;
+    Vol_in_Node _e23 = after_1;
+    const Vol_in_Node vol_in_node_8 = _e23;
     return vol_in_node_8;
 }
 
@@ -3606,61 +3605,66 @@ float3 vol_in_optical_depth(Vol_in_Ray ray_22, float end_6)
     Vol_in_Comb comb_14 = (Vol_in_Comb)0;
     float4 ahead_2[1] = (float4[1])0;
     float3 depth_1 = (0.0).xxx;
+    Vol_in_Node next_1 = (Vol_in_Node)0;
     Vol_in_Node node_9 = (Vol_in_Node)0;
     float3 node_depth = (float3)0;
 
     const float _e3 = vol_frame_word(VOL_IN_AT_SHADOW_STEP);
     const Vol_in_Comb _e5 = vol_in_new_comb(ray_22, end_6, _e3, int(1));
     comb_14 = _e5;
-    const Vol_in_Node _e12 = vol_in_start_node(comb_14, int(2));
-    node_9 = _e12;
+    const Vol_in_Node _e13 = vol_in_start_node(comb_14, int(2));
+    node_9 = _e13;
     uint2 loop_bound_27 = uint2(4294967295u, 4294967295u);
     bool loop_init_27 = true;
     while(true) {
         if (all(loop_bound_27 == uint2(0u, 0u))) { break; }
         loop_bound_27 -= uint2(loop_bound_27.y == 0u, 1u);
         if (!loop_init_27) {
-            Vol_in_Node _e53 = node_9;
-            const Vol_in_Node _e55 = vol_in_next_node(comb_14, _e53, int(2));
-            node_9 = _e55;
+            Vol_in_Node _e56 = node_9;
+            Vol_in_Node _e57 = next_1;
+            const Vol_in_Node _e59 = vol_in_next_node(comb_14, _e56, _e57, int(2));
+            node_9 = _e59;
         }
         loop_init_27 = false;
-        int _e15 = node_9.first;
-        int _e17 = comb_14.last;
-        if ((_e15 <= _e17)) {
+        int _e16 = node_9.first;
+        int _e18 = comb_14.last;
+        if ((_e16 <= _e18)) {
         } else {
             break;
         }
         {
-            Vol_in_Node _e19 = node_9;
-            const Vol_in_Node _e20 = vol_in_node_after(comb_14, _e19);
+            Vol_in_Node _e20 = node_9;
+            const Vol_in_Node _e21 = vol_in_node_after(comb_14, _e20);
+            next_1 = _e21;
             node_depth = (0.0).xxx;
             {
-                Vol_in_Node _e25 = node_9;
-                const float _e26 = vol_in_weigh(ray_22, 0u, comb_14, _e25, _e20);
+                Vol_in_Node _e26 = node_9;
+                Vol_in_Node _e27 = next_1;
+                const float _e28 = vol_in_weigh(ray_22, 0u, comb_14, _e26, _e27);
                 float4 matter = ahead_2[0u];
-                float _e31 = comb_14.own[0u];
-                if ((_e31 < 0.0)) {
-                    const float _e35 = vol_in_middle_of(comb_14, _e20);
-                    const float3 _e36 = vol_in_ray_at(ray_22, _e35);
-                    const float4 _e37 = vol_in_medium_extinction(0u, _e36);
-                    ahead_2[0u] = _e37;
+                float _e33 = comb_14.own[0u];
+                if ((_e33 < 0.0)) {
+                    Vol_in_Node _e37 = next_1;
+                    const float _e38 = vol_in_middle_of(comb_14, _e37);
+                    const float3 _e39 = vol_in_ray_at(ray_22, _e38);
+                    const float4 _e40 = vol_in_medium_extinction(0u, _e39);
+                    ahead_2[0u] = _e40;
                 }
-                float3 _e38 = node_depth;
-                node_depth = (_e38 + (matter.yzw * (max(matter.x, 0.0) * _e26)));
+                float3 _e41 = node_depth;
+                node_depth = (_e41 + (matter.yzw * (max(matter.x, 0.0) * _e28)));
             }
-            float3 _e46 = depth_1;
-            float3 _e47 = node_depth;
-            depth_1 = (_e46 + _e47);
             float3 _e49 = depth_1;
-            const float _e50 = vol_in_smallest(_e49);
-            if ((_e50 > VOL_IN_OPAQUE)) {
+            float3 _e50 = node_depth;
+            depth_1 = (_e49 + _e50);
+            float3 _e52 = depth_1;
+            const float _e53 = vol_in_smallest(_e52);
+            if ((_e53 > VOL_IN_OPAQUE)) {
                 break;
             }
         }
     }
-    float3 _e56 = depth_1;
-    return _e56;
+    float3 _e60 = depth_1;
+    return _e60;
 }
 
 float3 vol_in_depth_towards(Vol_in_Ray ray_23, float distance_6, uint grid_1)
@@ -4135,6 +4139,7 @@ Vol_in_Glow vol_in_march(Vol_in_Ray ray_32, float end_8)
     float weights_2[1] = (float[1])0;
     Vol_in_Interior here[1] = (Vol_in_Interior[1])0;
     Vol_in_Interior ahead_3[1] = (Vol_in_Interior[1])0;
+    Vol_in_Node next_2 = (Vol_in_Node)0;
     Vol_in_Node node_11 = (Vol_in_Node)0;
     bool some = (bool)0;
 
@@ -4146,65 +4151,69 @@ Vol_in_Glow vol_in_march(Vol_in_Ray ray_32, float end_8)
     const int _e8 = vol_in_widest_spacing();
     const Vol_in_Comb _e9 = vol_in_new_comb(ray_32, end_8, _e7, _e8);
     comb_15 = _e9;
-    const Vol_in_Node _e15 = vol_in_start_node(comb_15, int(2));
-    node_11 = _e15;
+    const Vol_in_Node _e16 = vol_in_start_node(comb_15, int(2));
+    node_11 = _e16;
     uint2 loop_bound_32 = uint2(4294967295u, 4294967295u);
     bool loop_init_32 = true;
     while(true) {
         if (all(loop_bound_32 == uint2(0u, 0u))) { break; }
         loop_bound_32 -= uint2(loop_bound_32.y == 0u, 1u);
         if (!loop_init_32) {
-            Vol_in_Node _e61 = node_11;
-            const Vol_in_Node _e63 = vol_in_next_node(comb_15, _e61, int(2));
-            node_11 = _e63;
+            Vol_in_Node _e64 = node_11;
+            Vol_in_Node _e65 = next_2;
+            const Vol_in_Node _e67 = vol_in_next_node(comb_15, _e64, _e65, int(2));
+            node_11 = _e67;
         }
         loop_init_32 = false;
-        int _e18 = node_11.first;
-        int _e20 = comb_15.last;
-        if ((_e18 <= _e20)) {
+        int _e19 = node_11.first;
+        int _e21 = comb_15.last;
+        if ((_e19 <= _e21)) {
         } else {
             break;
         }
         {
-            Vol_in_Node _e22 = node_11;
-            const Vol_in_Node _e23 = vol_in_node_after(comb_15, _e22);
+            Vol_in_Node _e23 = node_11;
+            const Vol_in_Node _e24 = vol_in_node_after(comb_15, _e23);
+            next_2 = _e24;
             some = false;
             {
-                Vol_in_Node _e28 = node_11;
-                const float _e29 = vol_in_weigh(ray_32, 0u, comb_15, _e28, _e23);
-                weights_2[0u] = _e29;
-                Vol_in_Interior _e32 = ahead_3[0u];
-                here[0u] = _e32;
-                float _e35 = comb_15.own[0u];
-                if ((_e35 < 0.0)) {
-                    const float _e39 = vol_in_middle_of(comb_15, _e23);
-                    const float3 _e40 = vol_in_ray_at(ray_32, _e39);
-                    const Vol_in_Interior _e41 = vol_in_medium_interior(0u, _e40);
-                    ahead_3[0u] = _e41;
+                Vol_in_Node _e29 = node_11;
+                Vol_in_Node _e30 = next_2;
+                const float _e31 = vol_in_weigh(ray_32, 0u, comb_15, _e29, _e30);
+                weights_2[0u] = _e31;
+                Vol_in_Interior _e34 = ahead_3[0u];
+                here[0u] = _e34;
+                float _e37 = comb_15.own[0u];
+                if ((_e37 < 0.0)) {
+                    Vol_in_Node _e41 = next_2;
+                    const float _e42 = vol_in_middle_of(comb_15, _e41);
+                    const float3 _e43 = vol_in_ray_at(ray_32, _e42);
+                    const Vol_in_Interior _e44 = vol_in_medium_interior(0u, _e43);
+                    ahead_3[0u] = _e44;
                 }
-                bool _e42 = some;
-                float _e44 = weights_2[0u];
-                some = (_e42 | (_e44 > 0.0));
+                bool _e45 = some;
+                float _e47 = weights_2[0u];
+                some = (_e45 | (_e47 > 0.0));
             }
-            bool _e48 = some;
-            if (_e48) {
-                Vol_in_Glow _e49 = glow_1;
-                int _e51 = node_11.number;
-                Vol_in_Node _e52 = node_11;
-                const float _e53 = vol_in_middle_of(comb_15, _e52);
-                const Vol_in_Chunk _e54 = vol_in_node_chunk(ray_32, _e53, styled_3, weights_2, here);
-                const Vol_in_Glow _e55 = vol_in_gather(_e49, _e51, _e54);
-                glow_1 = _e55;
+            bool _e51 = some;
+            if (_e51) {
+                Vol_in_Glow _e52 = glow_1;
+                int _e54 = node_11.number;
+                Vol_in_Node _e55 = node_11;
+                const float _e56 = vol_in_middle_of(comb_15, _e55);
+                const Vol_in_Chunk _e57 = vol_in_node_chunk(ray_32, _e56, styled_3, weights_2, here);
+                const Vol_in_Glow _e58 = vol_in_gather(_e52, _e54, _e57);
+                glow_1 = _e58;
             }
-            float3 _e57 = glow_1.transmittance;
-            const float _e58 = vol_in_largest(_e57);
-            if ((_e58 < VOL_IN_STOP)) {
+            float3 _e60 = glow_1.transmittance;
+            const float _e61 = vol_in_largest(_e60);
+            if ((_e61 < VOL_IN_STOP)) {
                 break;
             }
         }
     }
-    Vol_in_Glow _e64 = glow_1;
-    const Vol_in_Glow vol_in_glow_2 = _e64;
+    Vol_in_Glow _e68 = glow_1;
+    const Vol_in_Glow vol_in_glow_2 = _e68;
     return vol_in_glow_2;
 }
 

@@ -2838,9 +2838,8 @@ fn vol_in_start_node(comb: ptr<function, Vol_in_Comb>, lead: i32) -> Vol_in_Node
     return vol_in_node_ahead(comb, before, (*comb).first, lead);
 }
 
-// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn vol_in_next_node(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node, lead: i32) -> Vol_in_Node {
-    let after = vol_in_node_after(comb, node);
+// The next node to look at, given the one after this: those of runs, and `lead` before each. More than the last if there is none.
+fn vol_in_next_node(comb: ptr<function, Vol_in_Comb>, node: Vol_in_Node, after: Vol_in_Node, lead: i32) -> Vol_in_Node {
     var first = VOL_IN_NO_NODE;
     {
         let medium = 0u;
@@ -3032,8 +3031,9 @@ fn vol_in_march(ray: Vol_in_Ray, end: f32) -> Vol_in_Glow {
     // What is at the node and at the next one, of media that these are inside.
     var here: array<Vol_in_Interior, VOL_IN_MEDIUM_SLOTS>;
     var ahead: array<Vol_in_Interior, VOL_IN_MEDIUM_SLOTS>;
-    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
-        let next = vol_in_node_after(&comb, node);
+    var next: Vol_in_Node;
+    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, next, 2)) {
+        next = vol_in_node_after(&comb, node);
         var some = false;
         {
             let medium = 0u;
@@ -3098,8 +3098,9 @@ fn vol_in_optical_depth(ray: Vol_in_Ray, end: f32) -> vec3f {
     // Density and extinction of each medium at the next node, where that is inside.
     var ahead: array<vec4f, VOL_IN_MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, 2)) {
-        let next = vol_in_node_after(&comb, node);
+    var next: Vol_in_Node;
+    for (var node = vol_in_start_node(&comb, 2); node.first <= comb.last; node = vol_in_next_node(&comb, node, next, 2)) {
+        next = vol_in_node_after(&comb, node);
         // Optical depth of each node, all media together.
         var node_depth = vec3f(0.0);
         {

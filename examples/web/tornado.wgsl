@@ -2694,9 +2694,8 @@ fn start_node(comb: ptr<function, Comb>, lead: i32) -> Node {
     return node_ahead(comb, before, (*comb).first, lead);
 }
 
-// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn next_node(comb: ptr<function, Comb>, node: Node, lead: i32) -> Node {
-    let after = node_after(comb, node);
+// The next node to look at, given the one after this: those of runs, and `lead` before each. More than the last if there is none.
+fn next_node(comb: ptr<function, Comb>, node: Node, after: Node, lead: i32) -> Node {
     var first = NO_NODE;
     {
         let medium = 0u;
@@ -3086,7 +3085,7 @@ fn march(ray: Ray, end: f32) -> Glow {
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP), 1);
     var panels: Panels;
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, 1)) {
+    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, node_after(&comb, at), 1)) {
         let node = at.first;
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
@@ -3246,7 +3245,7 @@ fn optical_depth(ray: Ray, end: f32) -> vec3f {
     var before: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, 1)) {
+    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, node_after(&comb, node), 1)) {
         // Optical depth of each panel, all media together.
         depth += panel_depth(ray, &comb, node.first, &before);
         // Go on while the ray is not dark yet.

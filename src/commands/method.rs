@@ -25,8 +25,6 @@ pub(super) struct Plan {
     pub(super) estimate: Option<f32>,
     /// What was chosen for each light.
     pub(super) grids: Vec<GridChoice>,
-    /// For how many steps a sample of each medium stands where no finer one is.
-    pub(super) spacings: Vec<u32>,
 }
 
 /// Finds settings that mean nothing together.
@@ -131,7 +129,6 @@ pub(super) fn plan(
                 has_steps: true,
                 estimate: Some(chosen.estimate),
                 grids: chosen.grids,
-                spacings: chosen.spacings,
             }
         }
         Integrator::FixedStep => {
@@ -146,7 +143,6 @@ pub(super) fn plan(
                 has_steps: true,
                 estimate: None,
                 grids: Vec::new(),
-                spacings: Vec::new(),
             }
         }
         Integrator::MonteCarlo => Plan {
@@ -155,7 +151,6 @@ pub(super) fn plan(
             has_steps: false,
             estimate: None,
             grids: Vec::new(),
-            spacings: Vec::new(),
         },
     }
 }

@@ -274,6 +274,7 @@ impl Pictures<'_> {
         let most = rendered.costs.iter().flatten().map(|cost| cost.operations).max();
         self.stats.most_operations_per_pixel = self.stats.most_operations_per_pixel.max(most);
         self.stats.add(&plan, plan.estimate.or(rendered.standard_error), rendered.counts);
+        self.stats.spacings = frame.media.iter().map(|medium| medium.spacing).collect();
         self.stats.same_grids = self.filled.reused();
         Ok(rendered)
     }

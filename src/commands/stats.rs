@@ -91,7 +91,6 @@ impl Stats {
         });
         self.estimate = self.estimate.into_iter().chain(estimate).reduce(f32::max);
         self.light_grids = plan.grids.iter().map(LightGrid::new).collect();
-        self.spacings.clone_from(&plan.spacings);
         self.samples_per_pixel = self.samples_per_pixel.max(sampling.most);
         self.adaptive = smaller(self.adaptive, sampling.tolerance);
         self.counts = self.counts.plus(counts);

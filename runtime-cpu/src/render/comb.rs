@@ -32,7 +32,7 @@ pub(crate) const MAX_NODES: i32 = 16_384;
 /// Nodes have no greater numbers: here f32 still knows them and a half.
 pub(crate) const LAST_NODE: f32 = 4_194_304.0;
 
-/// Nodes `first..=last` of a comb; none if `first > last`.
+/// Nodes `first..=last` of a ray, or steps of its comb; none if `first > last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct NodeRange {
     /// The first one, at least 0.

@@ -310,8 +310,6 @@ pub struct Choice {
     pub job: Job,
     /// For each light; the frame has the grids already.
     pub grids: Vec<GridChoice>,
-    /// For each medium, see [`vol_compiler::frame::MediumFrame::spacing`]; the frame has them already.
-    pub spacings: Vec<u32>,
     /// Estimated root mean square error of the picture's colours over that of the colours, of steps, grids and
     /// spacings together; above what was asked for if that could not be met.
     pub estimate: f32,
@@ -342,12 +340,7 @@ pub fn choose_with(
     if frame.media.is_empty() {
         let grids = vec![GridChoice::default(); frame.lights.len()];
         frame.light_grids = vec![None; grids.len()];
-        return Choice {
-            job: StepChoice::ANY.job(size, sampling),
-            grids,
-            spacings: Vec::new(),
-            estimate: 0.0,
-        };
+        return Choice { job: StepChoice::ANY.job(size, sampling), grids, estimate: 0.0 };
     }
     frame.media.iter_mut().for_each(|medium| medium.spacing = 1);
     let tapes = Tapes::of_frame(program, frame);
@@ -371,10 +364,10 @@ pub fn choose_with(
         Search::new(&Pilot::new(&lit, &tapes, size), left).choices(left)
     });
     let spaced = spaced(&Pilot::new(&lit, &tapes, size), steps, max_error);
-    frame.media.iter_mut().zip(&spaced.spacings).for_each(|(medium, &spacing)| medium.spacing = spacing);
+    frame.media.iter_mut().zip(spaced.spacings).for_each(|(medium, spacing)| medium.spacing = spacing);
     frame.light_grids = lit.light_grids;
     let estimate = spaced.steps.estimate.hypot(taken).hypot(spaced.error);
-    Choice { job: spaced.steps.job(size, sampling), grids, spacings: spaced.spacings, estimate }
+    Choice { job: spaced.steps.job(size, sampling), grids, estimate }
 }
 
 /// The error that is left beside another one, if both are independent.

@@ -34,14 +34,13 @@ pub(super) fn spaced(pilot: &Pilot<'_>, steps: StepChoices, max_error: f32) -> S
     let is_styled = frame.styled_lights.iter().any(Option::is_some);
     let may_be = frame.media.len() > 1 && frame.skips.has(Skip::Spacings) && !is_styled;
     let found = midpoint.filter(|_| may_be).and_then(|midpoint| {
-        let trial = Trial::new(pilot, &midpoint, PART * max_error)?;
-        // Of the form that was cheapest without spacings.
-        let most = if cheapest == midpoint {
-            trial.samples as f64
-        } else {
-            f64::from(CORRECTED_COST) * Trial::new(pilot, &cheapest, 0.0)?.samples as f64
-        };
-        let (spacings, error) = trial.choice((1.0 - WORTH) * most)?;
+        let (picture, mut samples) = exposed(pilot, frame, &job_of(pilot, &midpoint))?;
+        if cheapest != midpoint {
+            let (_, corrected) = exposed(pilot, frame, &job_of(pilot, &cheapest))?;
+            samples = f64::from(CORRECTED_COST) * corrected;
+        }
+        let trial = Trial { pilot, job: job_of(pilot, &midpoint), picture, allowed: PART * max_error };
+        let (spacings, error) = trial.choice((1.0 - WORTH) * samples)?;
         Some(SpacedChoice { steps: midpoint, spacings, error })
     });
     found.unwrap_or_else(|| SpacedChoice {
@@ -51,23 +50,26 @@ pub(super) fn spaced(pilot: &Pilot<'_>, steps: StepChoices, max_error: f32) -> S
     })
 }
 
+fn job_of(pilot: &Pilot<'_>, steps: &StepChoice) -> Job {
+    steps.job(pilot.size, Sampling::CENTRE)
+}
+
+/// The pilot's rays in a frame, and the samples that they take; nothing if those are too many.
+fn exposed(pilot: &Pilot<'_>, frame: &Frame, job: &Job) -> Option<(Picture, f64)> {
+    let (picture, stats) = pilot.expose_scene(&Scene::new(frame, job), pilot.all(), MOST_BUDGET)?;
+    Some((picture, cost(&stats) as f64))
+}
+
 struct Trial<'a> {
     pilot: &'a Pilot<'a>,
     job: Job,
-    /// With a sample for each step, and how many.
+    /// With a sample for each step.
     picture: Picture,
-    samples: u64,
+    /// Error that spacings may add.
     allowed: f32,
 }
 
-impl<'a> Trial<'a> {
-    fn new(pilot: &'a Pilot<'a>, steps: &StepChoice, allowed: f32) -> Option<Self> {
-        let job = steps.job(pilot.size, Sampling::CENTRE);
-        let scene = Scene::new(pilot.frame, &job);
-        let (picture, stats) = pilot.expose_scene(&scene, pilot.all(), MOST_BUDGET)?;
-        Some(Self { pilot, job, picture, samples: cost(&stats), allowed })
-    }
-
+impl Trial<'_> {
     /// The widest spacings that may be, and their error; nothing if they take more samples than `most`.
     fn choice(&self, most: f64) -> Option<(Vec<u32>, f32)> {
         let media = 0..self.pilot.frame.media.len();
@@ -75,11 +77,10 @@ impl<'a> Trial<'a> {
         while let Some(widest) = spacings.iter().copied().max().filter(|&widest| widest > 1) {
             let mut frame = self.pilot.frame.clone();
             frame.media.iter_mut().zip(&spacings).for_each(|(medium, &spacing)| medium.spacing = spacing);
-            let scene = Scene::new(&frame, &self.job);
-            let (picture, stats) = self.pilot.expose_scene(&scene, self.pilot.all(), MOST_BUDGET)?;
+            let (picture, samples) = exposed(self.pilot, &frame, &self.job)?;
             let error = self.pilot.difference(&picture, &self.picture);
             if error <= self.allowed {
-                return (cost(&stats) as f64 <= most).then_some((spacings, error));
+                return (samples <= most).then_some((spacings, error));
             }
             spacings.iter_mut().for_each(|spacing| *spacing = (*spacing).min(widest / 2));
         }
@@ -92,13 +93,15 @@ impl<'a> Trial<'a> {
         let frame = Frame { media: vec![whole.media[medium].clone()], ..whole.clone() };
         let expose = |spacing: u32| {
             let job = Job { step: spacing as f32 * self.job.step, ..self.job };
-            Some(self.pilot.expose_scene(&Scene::new(&frame, &job), self.pilot.all(), MOST_BUDGET)?.0)
+            Some(exposed(self.pilot, &frame, &job)?.0)
         };
         let fine = expose(1)?;
+        // The errors of several media add up like those of independent measurements; the finest one has none.
+        let share = self.allowed / ((whole.media.len() - 1) as f32).sqrt();
         let mut widest = 1;
         while widest < MOST_SPACING {
             let error = self.pilot.difference_in(&expose(2 * widest)?, &fine, &self.picture);
-            if error > self.allowed {
+            if error > share {
                 break;
             }
             widest *= 2;

@@ -150,9 +150,8 @@ fn start_node(comb: ptr<function, Comb>, lead: i32) -> Node {
     return node_ahead(comb, before, (*comb).first, lead);
 }
 
-// The next node to look at: those of runs, and `lead` before each. More than the last if there is none.
-fn next_node(comb: ptr<function, Comb>, node: Node, lead: i32) -> Node {
-    let after = node_after(comb, node);
+// The next node to look at, given the one after this: those of runs, and `lead` before each. More than the last if there is none.
+fn next_node(comb: ptr<function, Comb>, node: Node, after: Node, lead: i32) -> Node {
     var first = NO_NODE;
     for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
         if ((*comb).runs[medium].y < after.first) {

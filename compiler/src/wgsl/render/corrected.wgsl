@@ -33,7 +33,7 @@ fn march(ray: Ray, end: f32) -> Glow {
     var comb = new_comb(ray, end, vol_frame_word(AT_STEP), 1);
     var panels: Panels;
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, 1)) {
+    for (var at = start_node(&comb, 1); at.first <= comb.last; at = next_node(&comb, at, node_after(&comb, at), 1)) {
         let node = at.first;
         let t = vec2f(panel_node(&comb, node), panel_node(&comb, node + 1));
         find_panels(ray, &comb, node, t, &panels);
@@ -187,7 +187,7 @@ fn optical_depth(ray: Ray, end: f32) -> vec3f {
     var before: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
     // The panel before a run is nothing: its end is the beginning of the first.
-    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, 1)) {
+    for (var node = start_node(&comb, 1); node.first <= comb.last; node = next_node(&comb, node, node_after(&comb, node), 1)) {
         // Optical depth of each panel, all media together.
         depth += panel_depth(ray, &comb, node.first, &before);
         // Go on while the ray is not dark yet.

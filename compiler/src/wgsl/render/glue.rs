@@ -44,7 +44,7 @@ pub(super) fn glue(program: &Program, quadrature: Quadrature) -> String {
     for (name, value) in HEADER.iter().chain(&counts) {
         text += &format!("const {name}: u32 = {value}u;\n");
     }
-    // What no light asks for, and the other quadrature, is left out by the device's compiler.
+    // What no light asks for is left out by the device's compiler.
     let lights = &program.lights;
     let switches = [
         ("CORRECTED", quadrature == Quadrature::Corrected),

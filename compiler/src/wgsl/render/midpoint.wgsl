@@ -43,8 +43,9 @@ fn march(ray: Ray, end: f32) -> Glow {
     // What is at the node and at the next one, of media that these are inside.
     var here: array<Interior, MEDIUM_SLOTS>;
     var ahead: array<Interior, MEDIUM_SLOTS>;
-    for (var node = start_node(&comb, 2); node.first <= comb.last; node = next_node(&comb, node, 2)) {
-        let next = node_after(&comb, node);
+    var next: Node;
+    for (var node = start_node(&comb, 2); node.first <= comb.last; node = next_node(&comb, node, next, 2)) {
+        next = node_after(&comb, node);
         var some = false;
         for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
             weights[medium] = weigh(ray, medium, &comb, node, next);
@@ -106,8 +107,9 @@ fn optical_depth(ray: Ray, end: f32) -> vec3f {
     // Density and extinction of each medium at the next node, where that is inside.
     var ahead: array<vec4f, MEDIUM_SLOTS>;
     var depth = vec3f(0.0);
-    for (var node = start_node(&comb, 2); node.first <= comb.last; node = next_node(&comb, node, 2)) {
-        let next = node_after(&comb, node);
+    var next: Node;
+    for (var node = start_node(&comb, 2); node.first <= comb.last; node = next_node(&comb, node, next, 2)) {
+        next = node_after(&comb, node);
         // Optical depth of each node, all media together.
         var node_depth = vec3f(0.0);
         for (var medium = 0u; medium < MEDIUM_COUNT; medium++) {
